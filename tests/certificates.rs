@@ -6,6 +6,7 @@ use scene::{Override, Scene};
 use simulation::{Simulation, build};
 use std::path::Path;
 use studies::certify::chain::gains;
+use studies::certify::reach::{Reach, ReachRay, reach};
 use studies::certify::{Certificate, ChannelSensitivity, Discretisation, Examiner};
 use vocabulary::math;
 
@@ -91,6 +92,7 @@ fn word(premise: &Premise) -> &'static str {
         Premise::SampledMeasurement => "sampled-measurement",
         Premise::Measurements => "measurements",
         Premise::Wheels => "wheels",
+        Premise::Filtered(_) => "filtered",
         Premise::Standing(_) => "standing",
         Premise::TooClose(_) => "too-close",
         Premise::RobustGain { .. } => "robust-gain",
@@ -131,6 +133,68 @@ fn v_falls_by_r_k_r() {
         steps += 1;
     }
     assert!(steps > 10, "{steps} steps");
+}
+
+/// What acts in place of the law suspends what is said of V and e, for as many samples as it acts, and nothing else.
+#[test]
+fn a_filter_and_a_stand_suspend_what_is_said_of_the_error() {
+    let filtered = include_str!("../scenes/pillar.toml");
+    let scene = Scene::parse(filtered, "pillar.toml", &[]).expect("a scene").scene;
+    let mut simulation = Simulation::new(build(&scene).expect("a run"));
+    let mut examiner = Examiner::new(&scene, &simulation, false);
+    let (mut moved, mut from) = (0, f64::INFINITY);
+    while let Some(record) = simulation.next_record() {
+        if record.is_filtered(2) {
+            (moved, from) = (moved + 1, from.min(record.snapshot.time));
+        }
+        examiner.push(&simulation);
+    }
+    let all = examiner.finish(&simulation);
+    let [free, held] = [&all[0], &all[1]];
+    assert!(!unmet(free, Statement::TrackingDecrease).contains(&"filtered"));
+    for statement in [Statement::TrackingDecrease, Statement::UltimateBound] {
+        let finding = held.finding(statement).expect("a finding");
+        let spell = finding.unmet.iter().find_map(|premise| match premise {
+            Premise::Filtered(spell) => Some(*spell),
+            _ => None,
+        });
+        let spell = spell.expect("a filter that acts");
+        let count = (spell.share * held.witness.samples() as f64).round();
+        assert_eq!((count, spell.first), (f64::from(moved), from));
+        assert!(moved > 100);
+    }
+    for statement in [Statement::RobustGain, Statement::NonNegative, Statement::Trapped] {
+        assert!(!unmet(held, statement).contains(&"filtered"), "{statement:?}");
+    }
+    let stands = certificates(include_str!("../scenes/stop-and-go.toml"), &[]);
+    for certificate in &stands {
+        let unmet = unmet(certificate, Statement::TrackingDecrease);
+        assert!(unmet.contains(&"standing") && !unmet.contains(&"filtered"), "{unmet:?}");
+    }
+    // A leader that its filter leads past another does not drive smoothly along its path.
+    let crossing = certificates(include_str!("../scenes/crossing.toml"), &["time.duration=12"]);
+    assert!(crossing.iter().all(|c| unmet(c, Statement::RobustGain).contains(&"leader-not-smooth")));
+}
+
+/// With a path's heading a place is turned by τ/R on a circle, and so is what can be held.
+#[test]
+fn what_can_be_held_is_turned_with_a_headings_lag() {
+    let curve = |lag: &str| {
+        let lag = format!("law.heading_lag={lag}");
+        let set = ["law.heading=path", &*lag].map(|set| set.parse::<Override>().expect("an override"));
+        let scene =
+            Scene::parse(include_str!("../scenes/circle-three.toml"), "c.toml", &set).expect("a scene");
+        reach(&scene.scene).expect("a run")
+    };
+    let [plain, turned] = [curve("0"), curve("1")].map(|all| all[0].clone());
+    // 1 m/s and 0.3 rad/s for half of the run; then the border of a bearing is that of the one 0.3 rad to the right.
+    let border = |of: &Reach, bearing: f64| {
+        let off = |ray: &&ReachRay| vocabulary::wrap(ray.bearing - bearing).abs();
+        of.rays.iter().min_by(|a, b| off(a).total_cmp(&off(b))).expect("rays").distance
+    };
+    let bearing = -1.0;
+    assert!((border(&turned, bearing + 0.3) - border(&plain, bearing)).abs() < 0.1);
+    assert!((border(&turned, bearing) - border(&plain, bearing)).abs() > 0.15);
 }
 
 #[test]

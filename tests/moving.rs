@@ -230,3 +230,37 @@ fn a_lead_that_stops_before_followers_that_cannot_is_told_of() {
         assert!(note.contains(part), "{part} is missing: {note}");
     }
 }
+
+/// Up, down and across a slope of 1 in 10, with a filter that has nothing to do.
+#[test]
+fn trucks_and_differential_drives_stand_on_a_slope() {
+    for kind in ["car", "differential"] {
+        for slope in [[0.1, 0.0], [-0.1, 0.0], [0.0, 0.1]] {
+            let height = |i: u32, j: u32| 8.0 + 2.0 * (slope[0] * f64::from(i) + slope[1] * f64::from(j));
+            let rows: Vec<Vec<f64>> = (0..16).map(|j| (0..31).map(|i| height(i, j)).collect()).collect();
+            let ground =
+                format!("ground={{ kind = \"table\", origin = [-20, -15], cell = 2, heights = {rows:?} }}");
+            let vehicle = format!("vehicle.kind={kind}");
+            let sets = [&*ground, &*vehicle, "proximity.range=4", "safety.filter=true", "groups.0.count=3"];
+            let mut places: Vec<[f64; 2]> = vec![];
+            let mut rolled: f64 = 0.0;
+            let edges = run(&scene("cars-stop-and-go", &sets), |record| {
+                if !(11.0..16.0).contains(&record.snapshot.time) {
+                    return;
+                }
+                // The leader still creeps up to its own place.
+                let followers = record.snapshot.robots.iter().skip(1);
+                let now = followers.map(|robot| [robot.motion.pose.x, robot.motion.pose.y]);
+                if places.is_empty() {
+                    places = now.collect();
+                } else {
+                    let off = now.zip(&places).map(|(a, b)| math::hypot(a[0] - b[0], a[1] - b[1]));
+                    rolled = rolled.max(off.fold(0.0, f64::max));
+                }
+            });
+            assert!(rolled < 1e-3, "{kind} on {slope:?}: {rolled} m in 5 s");
+            let [turn_rate, error] = standing(&edges);
+            assert!(turn_rate < 0.02 && error < 0.15, "{kind} on {slope:?}: {turn_rate} rad/s, {error} m");
+        }
+    }
+}

@@ -48,6 +48,8 @@ pub struct Formation {
 pub struct Decision {
     /// s^d at this instant, [m, rad]: the bearing against the leader's own heading, whatever the law holds it against.
     pub set_point: [f64; 2],
+    /// How far the heading that the bearing is held against is behind the leader's own, rad.
+    pub behind: f64,
     /// ds^d/dt, [m/s, rad/s], of what the law works on.
     pub set_point_rate: [f64; 2],
     /// Asked for, before limits.
@@ -314,6 +316,7 @@ impl Formation {
         let too_close = seen.relative.distance < law.distance_min;
         let mut decision = Decision::of(asked, &set_point, seen.own_speed, limits);
         if let Some(heading) = memory.heading {
+            decision.behind = heading.behind;
             decision.set_point[1] = wrap(place.value[1] - heading.behind);
         }
         Decision { rates, too_close, phase, displacement: memory.displacement(), ..decision }

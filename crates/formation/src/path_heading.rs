@@ -88,6 +88,14 @@ impl PathFilter {
     }
 }
 
+impl PathFilter {
+    /// How far θ̄ ends behind the heading of a leader that drives at `speed` m/s and turns at `turn_rate` rad/s, rad; 0
+    /// behind one that stands.
+    pub fn steady(&self, speed: f64, turn_rate: f64) -> f64 {
+        if speed > 0.0 { wrap(self.lag * turn_rate / speed) } else { 0.0 }
+    }
+}
+
 impl PathHeading {
     /// As it is behind a leader that has driven a curve of `curvature` 1/m for long, and heads for `leader_heading` rad.
     pub fn steady(filter: &PathFilter, leader_heading: f64, curvature: f64) -> Self {
@@ -169,6 +177,7 @@ mod tests {
                 state.advance(&filter, heading, step);
             }
             assert!((state.behind - lag / radius).abs() < 1e-3, "{lag}: {state:?}");
+            assert!((state.behind - filter.steady(2.0, 2.0 / radius)).abs() < 1e-3, "{lag}: {state:?}");
             assert!((state.rate(&filter, 2.0) - 2.0 / radius).abs() < 1e-3, "{lag}: {state:?}");
         }
     }

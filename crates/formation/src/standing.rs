@@ -178,7 +178,8 @@ impl StandingInput<'_> {
 }
 
 fn bounded_command(command: Command, speed: f64, [at_rest, growth]: [f64; 2]) -> Command {
-    let most = at_rest + growth * speed;
+    // Whoever rolls back on a slope has a speed below zero.
+    let most = at_rest + growth * speed.abs();
     let number = |x: f64| if x.is_nan() { 0.0 } else { x };
     Command {
         acceleration: number(command.acceleration).clamp(-ACCELERATION_MAX, ACCELERATION_MAX),

@@ -2,7 +2,9 @@
 
 use crate::action::Action;
 use crate::app_state::AppState;
-use crate::panels::{branches, certificates, curves, edge, film, formation, law, log, sensing, world};
+use crate::panels::{
+    branches, certificates, curves, edge, film, formation, law, log, safety, sensing, world,
+};
 use crate::quantities::PlotQuantity;
 use eframe::egui::{ComboBox, Frame, Id, Panel, ScrollArea, Ui, WidgetText};
 use egui_tiles::{Behavior, Linear, LinearDir, SimplificationOptions, Tile, TileId, Tiles, Tree, UiResponse};
@@ -38,6 +40,8 @@ pub const PANES: &[(&str, Draw)] = &[
     ("Energy", |ui, on| on.curves(ui, &[PlotQuantity::TrackingEnergy, PlotQuantity::ObserverEnergy])),
     ("Clearance", |ui, on| on.curves(ui, &[PlotQuantity::Clearance])),
     ("Certificates", |ui, on| certificates::show(ui, on.app_state, on.out)),
+    ("Safety", |ui, on| safety::show(ui, on.app_state, on.out)),
+    ("Barriers", |ui, on| safety::plots(ui, on.app_state, on.out)),
 ];
 
 impl Pane {
@@ -62,10 +66,11 @@ pub fn arrangement() -> Tree<Pane> {
     };
     let view = tabs(&["View"]);
     let (formation, edge) = (tabs(&["Formation"]), tabs(&["Edge", "Branches"]));
-    let (law, more) = (tabs(&["Law", "Observer", "Limits"]), tabs(&["Sensing", "World", "Film", "Log"]));
+    let (law, more) =
+        (tabs(&["Law", "Observer", "Limits", "Safety"]), tabs(&["Sensing", "World", "Film", "Log"]));
     let plots = [
         tabs(&["Errors"]),
-        tabs(&["Commands", "Speeds"]),
+        tabs(&["Commands", "Speeds", "Barriers"]),
         tabs(&["Observer error"]),
         tabs(&["Energy", "Certificates", "Clearance"]),
     ];

@@ -4,10 +4,11 @@ use crate::app_state::AppState;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
 use scene::Follow;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use studies::certify::{WitnessRow, rows};
 use vocabulary::math;
-use vocabulary::{Edge, EdgeState, LawKind, Snapshot, StepRecord};
+use vocabulary::{Edge, EdgeState, LawKind, SafetyState, Snapshot, StepRecord};
 
 /// A plotted quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,11 +37,15 @@ pub enum PlotQuantity {
     RobustMargin,
     /// V of eq 29: ½‖r‖² and P.
     Lyapunov,
+    /// Least slack of a robot's barriers, m/s.
+    Slack,
+    /// How far a safety filter moved the command, m/s².
+    Moved,
 }
 
 impl PlotQuantity {
     /// All quantities in the order of declaration, with their axis label and table column.
-    const TABLE: [(Self, &'static str, &'static str); 12] = [
+    const TABLE: [(Self, &'static str, &'static str); 14] = [
         (Self::DistanceError, "error of ℓ (m)", "distance_error_m"),
         (Self::BearingError, "error of ψ (°)", "bearing_error_deg"),
         (Self::Acceleration, "dv/dt (m/s²)", "acceleration_m_s2"),
@@ -53,6 +58,8 @@ impl PlotQuantity {
         (Self::Clearance, "clearance (m)", "clearance_m"),
         (Self::RobustMargin, "β margin (m/s²)", "beta_margin_m_s2"),
         (Self::Lyapunov, "V (eq 29)", "lyapunov_v"),
+        (Self::Slack, "slack (m/s)", "least_slack_m_s"),
+        (Self::Moved, "moved (m/s²)", "moved_m_s2"),
     ];
 
     /// All of them, in order.
@@ -108,6 +115,10 @@ pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<
             continue;
         }
         let records = history.between(branch, span, most);
+        if let Some(value) = filtered(quantity) {
+            all.extend(filter_curves(branch, &records, value));
+            continue;
+        }
         for (edge, ends) in history.fleet().edges.iter().enumerate() {
             let Some((_, _, follow)) = app_state.follower(edge) else { continue };
             let point = |m: &&StepRecord| {
@@ -125,6 +136,38 @@ pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<
                 let points = records.iter().filter_map(speed).collect();
                 all.push(QuantityCurve { branch, robot: Some(robot), points });
             }
+        }
+    }
+    all
+}
+
+/// A quantity of a safety filter; `None` for other quantities.
+fn filtered(quantity: PlotQuantity) -> Option<fn(&SafetyState) -> Option<f64>> {
+    match quantity {
+        PlotQuantity::Slack => Some(SafetyState::least_slack),
+        PlotQuantity::Moved => Some(|state| Some(state.moved)),
+        _ => None,
+    }
+}
+
+/// Curves of a quantity of every robot that has a filter; a new one after every stretch in which it has no value.
+fn filter_curves(
+    branch: usize,
+    records: &[&StepRecord],
+    value: fn(&SafetyState) -> Option<f64>,
+) -> Vec<QuantityCurve> {
+    let robots: BTreeSet<usize> =
+        records.iter().flat_map(|record| &record.safety).map(|state| state.robot).collect();
+    let mut all = Vec::new();
+    for robot in robots {
+        let point = |record: &&StepRecord| {
+            let state = record.safety.iter().find(|state| state.robot == robot)?;
+            Some([record.snapshot.time, value(state)?])
+        };
+        let points: Vec<_> = records.iter().map(point).collect();
+        for stretch in points.split(Option::is_none).filter(|stretch| !stretch.is_empty()) {
+            let points = stretch.iter().flatten().copied().collect();
+            all.push(QuantityCurve { branch, robot: Some(robot), points });
         }
     }
     all
@@ -187,7 +230,9 @@ fn value(
         PlotQuantity::ObserverEnergy
         | PlotQuantity::Clearance
         | PlotQuantity::RobustMargin
-        | PlotQuantity::Lyapunov => {
+        | PlotQuantity::Lyapunov
+        | PlotQuantity::Slack
+        | PlotQuantity::Moved => {
             return None;
         }
     };
@@ -212,7 +257,7 @@ pub fn bounds(app_state: &AppState, quantity: PlotQuantity) -> Vec<f64> {
         PlotQuantity::Acceleration => both(vehicle.acceleration_max),
         PlotQuantity::TurnRate => both(vehicle.turn_rate_max),
         PlotQuantity::Speed => vec![vehicle.speed_min, vehicle.speed_max],
-        PlotQuantity::Clearance | PlotQuantity::RobustMargin => vec![0.0],
+        PlotQuantity::Clearance | PlotQuantity::RobustMargin | PlotQuantity::Slack => vec![0.0],
         _ => Vec::new(),
     };
     bounds.retain(|bound| bound.is_finite());

@@ -67,6 +67,22 @@ symbols! {
         "Rate estimates become less accurate, more so with a small ε.";
     PIXEL_NOISE = "σ_px", "Corner noise", "px", "standard deviation of every corner of a tag",
         "The leader's distance and heading become less certain, first at long range.";
+    HEADING_LENGTH = "λ", "Heading length", "m", "H(s) = (1 + (2λ − τ)s) / (1 + λs)² from θᵢ to θ̄, s along the leader's path",
+        "A turn of the leader arrives later and more smoothly.";
+    HEADING_LAG = "τ", "Heading lag", "m", "on a circle of radius R, θ̄ is τ/R behind θᵢ; τ = d/2 follows the leader's track",
+        "Swings die out along a chain; on curves the whole formation is turned more against its leader.";
+    BARRIER_MARGIN = "D", "Margin", "m", "h = |p + c h − o| − (R + Rₒ + D + c)",
+        "The robot keeps farther away from everything.";
+    POINT_AHEAD = "c", "Point ahead", "m", "the barrier is on the point p + c h, whose velocity depends on ω at any speed",
+        "The robot steers away earlier, and keeps more room ahead of it.";
+    BARRIER_GAIN = "α", "Barrier gain", "1/s", "dh/dt ≥ −α h",
+        "Room is used up faster: the filter acts later and harder. At most what the robot can brake, over its largest speed.";
+    BARRIER_HORIZON = "T_h", "Horizon", "s", "dh/dt is that of the speed v + T_h a",
+        "Braking counts for more against steering.";
+    VIEW_DISTANCE = "ℓ_max", "View distance", "m", "a barrier of second order with a double pole at −2 1/s",
+        "The leader may get farther away.";
+    VIEW_ANGLE = "ψ_max", "View angle", "°", "the leader's angle off the middle of the picture, of a camera that turns after it",
+        "The leader may get nearer to the rim of the picture.";
 }
 
 impl Symbol {

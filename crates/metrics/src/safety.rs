@@ -25,9 +25,6 @@ pub struct SafetyMetrics {
     pub first_conflict: Vec<String>,
 }
 
-/// A command that is moved by less is not, m/s².
-const MOVED: f64 = 1e-6;
-
 /// Running sums of one filter.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SafetySums {
@@ -43,7 +40,7 @@ pub(crate) struct SafetySums {
 impl SafetySums {
     pub(crate) fn add(&mut self, time: f64, state: &SafetyState) {
         self.samples += 1;
-        self.moved += u64::from(state.moved > MOVED);
+        self.moved += u64::from(state.is_moved());
         self.moved_max = self.moved_max.max(state.moved);
         if let Some(barrier) = state.least_room()
             && self.room.is_none_or(|(least, ..)| barrier.value < least)

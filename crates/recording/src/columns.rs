@@ -70,6 +70,7 @@ pub(crate) fn edge(time: f64, [leader, follower]: [&str; 2], edge: &EdgeState, r
     row("follower", Text(follower));
     numbers(["distance_m", "bearing_rad", "view_angle_rad"], edge.relative.coordinates(), row);
     numbers(["set_distance_m", "set_bearing_rad"], edge.set_point, row);
+    row("heading_behind_rad", Number(edge.behind));
     numbers(["error_distance_m", "error_bearing_rad"], edge.error, row);
     row("asked_acceleration_m_s2", Number(edge.asked.acceleration));
     row("asked_turn_rate_rad_s", Number(edge.asked.turn_rate));
@@ -132,7 +133,6 @@ pub(crate) fn names(fleet: &FleetInfo, list: &[Constraint]) -> String {
 /// What a safety filter did at a sample.
 pub(crate) fn safety(time: f64, fleet: &FleetInfo, state: &SafetyState, row: &mut Row<'_>) {
     let barriers: Vec<Constraint> = state.barriers.iter().map(|barrier| barrier.constraint).collect();
-    let least = state.barriers.iter().map(|barrier| barrier.slack).fold(f64::INFINITY, f64::min);
     row("time_s", Number(time));
     row("robot", Text(fleet.robots.get(state.robot).map_or("", |robot| &robot.name)));
     row("wished_acceleration_m_s2", Number(state.wished.acceleration));
@@ -141,7 +141,7 @@ pub(crate) fn safety(time: f64, fleet: &FleetInfo, state: &SafetyState, row: &mu
     row("applied_turn_rate_rad_s", Number(state.applied.turn_rate));
     row("moved_m_s2", Number(state.moved));
     row("room_m", Number(state.least_room().map_or(f64::INFINITY, |barrier| barrier.value)));
-    row("slack_m_s", Number(least));
+    row("slack_m_s", Number(state.least_slack().unwrap_or(f64::INFINITY)));
     numbers(["relaxed_collisions", "relaxed_views"], state.relaxed, row);
     row("barriers", Text(&names(fleet, &barriers)));
     row("acting", Text(&names(fleet, &state.acting)));

@@ -1,7 +1,7 @@
 //! A scene's laws in one line, for pictures and reports.
 
 use scene::{Follow, Scene, SensingKind, SwitchingKind};
-use vocabulary::{LawKind, ObserverKind, TimeMode, counted};
+use vocabulary::{HeadingReference, LawKind, ObserverKind, TimeMode, counted};
 
 /// Law, gains and timing of a scene in one line; ranges where gains of followers differ, "mixed" where their laws do.
 pub fn caption(scene: &Scene) -> String {
@@ -19,6 +19,21 @@ pub fn caption(scene: &Scene) -> String {
             Some(SwitchingKind::Sign) => "sign".to_owned(),
             None => "tanh or sign".to_owned(),
         });
+    }
+    let path = |follow: &Follow| follow.law.heading == HeadingReference::Path;
+    let filtered: Vec<_> = all.iter().copied().filter(|follow| path(follow)).collect();
+    if !filtered.is_empty() {
+        let [length, lag] = [
+            range(&filtered, |follow| [follow.law.heading_length; 2]),
+            range(&filtered, |follow| [follow.law.heading_lag; 2]),
+        ];
+        let some = if filtered.len() < all.len() { "some by " } else { "" };
+        parts.push(format!("{some}path heading, λ {length} m, τ {lag} m"));
+    }
+    match all.iter().filter(|follow| follow.law.standing).count() {
+        0 => {}
+        count if count == all.len() => parts.push("standing".to_owned()),
+        count => parts.push(format!("{count} of {} standing", all.len())),
     }
     let observed: Vec<_> = all.iter().copied().filter(|follow| observer(follow).is_some()).collect();
     match common(&observed, observer) {
@@ -134,6 +149,11 @@ mod tests {
         assert!(both.contains("K (3 to 5, 4 to 5)"), "{both}");
         let laws = told(&["robots.follower-2.law.kind=full-state"]);
         assert!(laws.starts_with("Mixed laws · K 5 · β 5 ·"), "{laws}");
+        let path = ["law.heading=path", "law.heading_lag=0.5", "robots.follower-2.law.heading_lag=1"];
+        let behind = told(&path);
+        assert!(behind.contains(" · path heading, λ 1 m, τ 0.5 to 1 m · ε"), "{behind}");
+        let stands = told(&[path[0], path[1], path[2], "robots.follower-1.law.standing=true"]);
+        assert!(stands.contains("τ 0.5 to 1 m · 1 of 2 standing · ε"), "{stands}");
         let sees = told(&["robots.follower-2.sensing.kind=geometric"]);
         assert!(sees.contains("mixed sensing"), "{sees}");
     }

@@ -51,6 +51,7 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
             sight: known.sight,
             age,
             set_point: wanted,
+            behind: decision.behind,
             error: [wanted[0] - relative.distance, wrap(wanted[1] - relative.bearing)],
             asked: decision.asked,
             applied: decision.applied,

@@ -58,13 +58,12 @@ fn check_drivable(scene: &Scene, index: usize, motion: &PathMotion) -> Result<()
     Ok(())
 }
 
-/// Limits and driver of a robot. A follower that stands with its leader has no least speed.
+/// Limits and driver of a robot.
 pub(crate) fn handling(scene: &Scene, robot: &scene::Robot) -> Handling {
     let vehicle = &robot.vehicle;
     let wheels = vehicle.kind.has_wheels().then(|| Arc::new(wheeled(vehicle)));
-    let follow = robot.role.follow().map(|follow| follow.law.standing);
-    let stands = follow.unwrap_or_else(|| joins_standing(scene, &robot.name));
-    let limits = vehicle.limits();
+    let limits = robot.limits();
+    let stands = joins_standing(scene, &robot.name);
     Handling { limits: if stands { Limits { speed_min: 0.0, ..limits } } else { limits }, wheels }
 }
 

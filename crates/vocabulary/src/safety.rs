@@ -115,6 +115,16 @@ impl Constraint {
         matches!(self, Self::ViewDistance | Self::ViewLeft | Self::ViewRight)
     }
 
+    /// Whether its barrier is an angle, in rad.
+    pub fn is_angle(self) -> bool {
+        matches!(self, Self::ViewLeft | Self::ViewRight)
+    }
+
+    /// Whether its name is that of a robot or a prop.
+    fn is_named(self) -> bool {
+        matches!(self, Self::Robot(_) | Self::Prop(_))
+    }
+
     /// Whether it is what the robot's actuators can do.
     pub fn is_limit(self) -> bool {
         matches!(self, Self::Braking | Self::Driving | Self::LeftTurn | Self::RightTurn)
@@ -137,7 +147,50 @@ impl Constraint {
     }
 }
 
+/// A command that is moved by less is not, m/s².
+const MOVED: f64 = 1e-6;
+
+/// Constraints in a sentence: robots and props by their names, everything else with its article.
+fn list(constraints: &[Constraint], fleet: &FleetInfo) -> String {
+    let said = |constraint: &Constraint| {
+        let article = if constraint.is_named() { "" } else { "the " };
+        format!("{article}{}", constraint.name(fleet))
+    };
+    let all: Vec<String> = constraints.iter().map(said).collect();
+    match all.as_slice() {
+        [] => String::new(),
+        [one] => one.clone(),
+        [some @ .., last] => format!("{} and {last}", some.join(", ")),
+    }
+}
+
 impl SafetyState {
+    /// What leaves no command, as "no way between bob, wall-2 and the left of the view"; `None` where there is one.
+    pub fn conflict_words(&self, fleet: &FleetInfo) -> Option<String> {
+        let alone = self.conflict.len() == 1;
+        let preposition = if alone { "past" } else { "between" };
+        (!self.conflict.is_empty()).then(|| format!("no way {preposition} {}", list(&self.conflict, fleet)))
+    }
+
+    /// The barriers that hold the command where it is, as "bob and the north edge"; `None` where limits alone do, or
+    /// nothing moves it.
+    pub fn acting_words(&self, fleet: &FleetInfo) -> Option<String> {
+        let acting = self.acting.iter().filter(|constraint| self.is_moved() && !constraint.is_limit());
+        let acting: Vec<Constraint> = acting.copied().collect();
+        (!acting.is_empty()).then(|| list(&acting, fleet))
+    }
+
+    /// The least slack of its barriers: the room that the applied command leaves, in the unit of the row; `None` where
+    /// nothing is near.
+    pub fn least_slack(&self) -> Option<f64> {
+        self.barriers.iter().map(|barrier| barrier.slack).min_by(f64::total_cmp)
+    }
+
+    /// Whether it moved the command, beyond rounding.
+    pub fn is_moved(&self) -> bool {
+        self.moved > MOVED
+    }
+
     /// The least value of a barrier that keeps the robot from running into something, m; `None` where none is near.
     pub fn least_room(&self) -> Option<&BarrierState> {
         let near = self.barriers.iter().filter(|barrier| !barrier.constraint.is_view());
@@ -157,5 +210,26 @@ mod tests {
             assert_eq!(Constraint::of_code(constraint.code()), Some(constraint));
         }
         assert_eq!(Constraint::of_code([Constraint::KINDS.len(), 0]), None);
+    }
+
+    #[test]
+    fn what_acts_and_what_leaves_no_command_is_said_in_a_sentence() {
+        let robot = |name: &str| crate::RobotInfo::new(name, false, crate::Body::default());
+        let fleet = FleetInfo { robots: vec![robot("ann"), robot("bob")], ..FleetInfo::default() };
+        let mut state = SafetyState {
+            moved: 0.4,
+            acting: vec![Constraint::Braking, Constraint::Robot(1), Constraint::Edge(3)],
+            conflict: vec![Constraint::Robot(1), Constraint::LeftTurn, Constraint::ViewLeft],
+            ..SafetyState::default()
+        };
+        assert_eq!(state.acting_words(&fleet).as_deref(), Some("bob and the north edge"));
+        let conflict = "no way between bob, the left turn limit and the left of the view";
+        assert_eq!(state.conflict_words(&fleet).as_deref(), Some(conflict));
+        (state.moved, state.conflict) = (0.0, vec![Constraint::Robot(1)]);
+        assert_eq!((state.acting_words(&fleet), state.least_slack()), (None, None));
+        assert_eq!(state.conflict_words(&fleet).as_deref(), Some("no way past bob"));
+        let barrier = |slack| BarrierState { slack, ..BarrierState::default() };
+        state.barriers = vec![barrier(0.3), barrier(-0.1)];
+        assert_eq!(state.least_slack(), Some(-0.1));
     }
 }

@@ -18,6 +18,9 @@ pub struct EdgeState {
     pub age: f64,
     /// Wanted [distance in m, bearing in rad], from the leader's own heading: the place that the follower is driven to.
     pub set_point: [f64; 2],
+    /// How far the heading that the bearing is held against is behind the leader's own, rad: what a set point that is
+    /// written in a scene lies beside the one here; 0 where it is the leader's own.
+    pub behind: f64,
     /// Tracking error [m, rad], set point minus truth, bearing wrapped (eq 14).
     pub error: [f64; 2],
     /// What the law asked for, before limits.
@@ -74,6 +77,11 @@ impl StepRecord {
     pub fn pairs<'a>(&'a self, fleet: &'a FleetInfo) -> impl Iterator<Item = (usize, Edge, &'a EdgeState)> {
         let all = self.edges.iter().enumerate();
         all.filter_map(|(index, state)| Some((index, self.edge(fleet, index)?, state)))
+    }
+
+    /// Whether the safety filter of a robot moved its command.
+    pub fn is_filtered(&self, robot: usize) -> bool {
+        self.safety.iter().any(|state| state.robot == robot && state.is_moved())
     }
 
     /// The moment at `share` (0 to 1) of the way from `a` to `b`, for pictures between two control samples.

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use studies::certify::beyond::{Beyond, PERIODS, StabilityChart};
 use studies::certify::chain::{EdgeGain, GainPoint, LENGTHS};
 use studies::certify::{
-    Certificate, Constants, Discretisation, Infeasible, LongestPeriod, NotLinear, Statement,
+    Certificate, Constants, Discretisation, Infeasible, LongestPeriod, NotLinear, Premise, Statement,
     StatementFinding, StatementOutcome,
 };
 use vocabulary::{HeadingReference, Word, math};
@@ -22,6 +22,7 @@ pub(super) fn tell(report: &CertifyReport<'_>, written: &[PathBuf]) {
         edge(report, certificate);
     }
     others(report);
+    suspended(report);
     if report.scene.followers().any(|(_, follow)| follow.law.heading == HeadingReference::Path) {
         say(
             "\nheading = \"path\": stated of φ = ψ + θᵢ in place of ψ, so dωᵢ/dt drops out of gᵥVᵢ and d²θ̄/dt² comes in; that θ̄ itself \
@@ -93,6 +94,55 @@ fn others(report: &CertifyReport<'_>) {
     say(
         "✓ holds, ✗ violated from this time on, – premise not met; in brackets whether the inequality holds numerically (✓) or not (✗)",
     );
+}
+
+/// What acted in place of laws: how often, on which edges and from when on, and what then holds.
+fn suspended(report: &CertifyReport<'_>) {
+    let filter = |premise: &Premise| matches!(premise, Premise::Filtered(_));
+    let stands = |premise: &Premise| matches!(premise, Premise::Standing(_));
+    for (what, is, then) in [
+        (
+            "a safety filter moves commands",
+            &filter as &dyn Fn(&Premise) -> bool,
+            "then nothing is claimed of V, r and e (eqs 29-30, 44, 51-53); β and P, which are of the law's own command, and the \
+             observer, which is fed what is applied, keep their statements (Lemma 4.1, eqs 28, 45-49); barriers hold wherever they \
+             leave a command",
+        ),
+        (
+            "the standing rule acts in place of the law",
+            &stands,
+            "then the same: followers track their places, or hold, as tests measure and no theorem says",
+        ),
+    ] {
+        let mut lines = vec![];
+        for certificate in &report.certificates {
+            let finding = certificate.finding(Statement::TrackingDecrease);
+            let Some(Premise::Filtered(spell) | Premise::Standing(spell)) =
+                finding.and_then(|finding| finding.unmet.iter().find(|premise| is(premise)))
+            else {
+                continue;
+            };
+            let samples = certificate.witness.samples();
+            let count = (spell.share * samples as f64).round();
+            lines.push(format!(
+                "  {:<28} {count} of {samples} samples, from {:.2} s, last at {:.2} s",
+                report.edge(certificate.edge),
+                spell.first,
+                spell.last
+            ));
+        }
+        if lines.is_empty() {
+            continue;
+        }
+        say(&format!("\n{what}"));
+        for line in lines.iter().take(MOST_EDGES) {
+            say(line);
+        }
+        if let Some(more) = lines.len().checked_sub(MOST_EDGES).filter(|more| *more > 0) {
+            say(&format!("  … and {more} more"));
+        }
+        say(&format!("  {then}"));
+    }
 }
 
 fn cell(finding: &StatementFinding) -> String {

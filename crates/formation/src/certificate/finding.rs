@@ -219,14 +219,18 @@ impl FindingView<'_> {
         let chatter = || spell(&ledger.chatters).map(Premise::Chatter);
         let at_bound = || spell(&ledger.at_speed_bound).map(Premise::SpeedBound);
         let stands = || spell(&ledger.stands).map(Premise::Standing);
+        let filtered = || spell(&ledger.filtered).map(Premise::Filtered);
         let close = || spell(&ledger.too_close).map(Premise::TooClose);
         let held = c.held.map(Premise::Held);
         let measurements = c.measures.then_some(Premise::Measurements);
         let wheels = c.wheels.then_some(Premise::Wheels);
         let samples = c.sampled_measurement.then_some(Premise::SampledMeasurement);
         let epsilon = || self.constants.filter(|k| k.epsilon > k.epsilon_1).map(|_| Premise::Epsilon);
-        let tracking =
-            || vec![smoothed, chatter(), saturated(), at_bound(), stands(), close(), rough, beta(), held];
+        let given_way = || [saturated(), at_bound(), filtered(), stands()];
+        let tracking = || {
+            let rest = [close(), rough, beta(), held];
+            [vec![smoothed, chatter()], given_way().to_vec(), rest.to_vec()].concat()
+        };
         let list: Vec<Option<Premise>> = match statement {
             Statement::RobustGain | Statement::Epsilon => vec![rough],
             Statement::NonNegative => vec![smoothed, rough, beta()],

@@ -42,6 +42,7 @@ pub(super) struct Ledger {
     pub(super) chatters: Tally,
     pub(super) at_speed_bound: Tally,
     pub(super) stands: Tally,
+    pub(super) filtered: Tally,
     pub(super) too_close: Tally,
     last: WitnessRow,
 }
@@ -88,6 +89,7 @@ impl Ledger {
         self.chatters.note(row.time, row.chatters);
         self.at_speed_bound.note(row.time, row.at_speed_bound);
         self.stands.note(row.time, row.stands);
+        self.filtered.note(row.time, row.diverted);
         self.too_close.note(row.time, row.too_close);
         self.last = *row;
     }

@@ -26,6 +26,8 @@ pub enum Premise {
     Saturated(Spell),
     /// The speed stood at its bound.
     SpeedBound(Spell),
+    /// A safety filter moved the command.
+    Filtered(Spell),
     /// Near a stand the law gave way to the standing rule.
     Standing(Spell),
     /// The leader's speed or turn rate changed between two samples as no bounded d²u/dt² allows.
@@ -74,6 +76,7 @@ impl Premise {
             Self::Chatter(when) => spell("the sign switches faster than steps follow", when),
             Self::Saturated(when) => spell("saturation active", when),
             Self::SpeedBound(when) => spell("v at its bound", when),
+            Self::Filtered(when) => spell("a safety filter moves the command", when),
             Self::Standing(when) => spell("the standing rule acts in place of the law", when),
             Self::LeaderNotSmooth { at } => format!("leader not smooth at {at:.2} s"),
             Self::Held(period) => format!("sampled: the law is held for {} ms", 1e3 * period),

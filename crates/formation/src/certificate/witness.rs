@@ -35,6 +35,8 @@ pub struct Instant {
     pub at_speed_bound: bool,
     /// Whether the standing rule had a part in the command.
     pub stands: bool,
+    /// Whether a safety filter moved the command.
+    pub diverted: bool,
     /// Whether the distance was below ℓ_min.
     pub too_close: bool,
 }
@@ -73,6 +75,8 @@ pub struct WitnessRow {
     pub at_speed_bound: bool,
     /// Whether the standing rule had a part in the command.
     pub stands: bool,
+    /// Whether a safety filter moved the command.
+    pub diverted: bool,
     /// Whether the distance was below ℓ_min.
     pub too_close: bool,
     /// Whether a sign in the law switched back since a few samples.
@@ -153,6 +157,11 @@ impl Witness {
         self.rows.as_deref().unwrap_or_default()
     }
 
+    /// Number of samples.
+    pub fn samples(&self) -> u64 {
+        self.ledger.samples
+    }
+
     /// First and last time, s; `None` before the first sample.
     pub fn span(&self) -> Option<[f64; 2]> {
         (self.ledger.samples > 0).then_some(self.ledger.span)
@@ -203,6 +212,7 @@ impl Witness {
             limited: now.limited,
             at_speed_bound: now.at_speed_bound,
             stands: now.stands,
+            diverted: now.diverted,
             too_close: now.too_close,
             chatters,
         };

@@ -164,13 +164,19 @@ impl AppState {
         self.edit(what, |text| values.iter().try_for_each(|(path, value)| text.set(path, value)));
     }
 
-    /// Sets a value of the selected follower or of all followers; `None` restores the default.
+    /// Sets a value of the selected follower or of all followers; `None` restores the default. Robots that lead have
+    /// safety filters, too.
     fn tune(&mut self, what: &str, key: &str, value: Option<&str>) {
         let all = self.for_all;
-        let Some((_, _, name, _)) = self.tuned_follower() else { return };
-        let name = name.to_owned();
-        let followers: Vec<String> =
-            (0..).map_while(|edge| self.follower(edge).map(|(_, name, _)| name.to_owned())).collect();
+        let safety = key.starts_with("safety.");
+        let one = if safety {
+            self.filtered_robot().map(|(_, robot)| robot.name.clone())
+        } else {
+            self.tuned_follower().map(|(_, _, name, _)| name.to_owned())
+        };
+        let (Some(name), Some(scene)) = (one, self.scene_now()) else { return };
+        let tuned = scene.robots.iter().filter(|robot| safety || robot.role.follow().is_some());
+        let tuned: Vec<String> = tuned.map(|robot| robot.name.clone()).collect();
         let shown = value.map_or_else(|| "its default".to_owned(), str::to_owned);
         let whose = if all { "all".to_owned() } else { name.clone() };
         let what = match what.strip_suffix('…') {
@@ -180,7 +186,7 @@ impl AppState {
         self.edit(&what, |text| {
             if all {
                 // Values of single robots and groups would override the common value.
-                for name in &followers {
+                for name in &tuned {
                     text.remove(&format!("robots.{name}.{key}"))?;
                 }
                 for group in 0..text.count("groups") {
@@ -222,8 +228,13 @@ impl AppState {
     /// The edge on the other side of the same leader.
     pub(crate) fn twin(&self, edge: usize, [distance, bearing]: [f64; 2]) -> Option<usize> {
         let fleet = self.fleet()?;
-        let leader = fleet.edges.get(edge)?.leader;
-        (0..fleet.edges.len()).filter(|other| *other != edge && fleet.edges[*other].leader == leader).find(
+        let record = self.record();
+        let leader_of = |edge: usize| match &record {
+            Some(record) => Some(record.edge(fleet, edge)?.leader),
+            None => Some(fleet.edges.get(edge)?.leader),
+        };
+        let leader = leader_of(edge)?;
+        (0..fleet.edges.len()).filter(|other| *other != edge && leader_of(*other) == Some(leader)).find(
             |other| {
                 self.set_point(*other).is_some_and(|[d, b]| {
                     (d - distance).abs() < ALIKE[0] && wrap(b + bearing).abs() < ALIKE[1]

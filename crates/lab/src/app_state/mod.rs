@@ -7,6 +7,7 @@ mod linked;
 mod past_changes;
 mod recorded;
 
+use crate::session::branches::BranchChange;
 use crate::session::history::History;
 use crate::session::prediction::Prediction;
 use crate::session::runner::{RunEvent, RunRequest};
@@ -18,7 +19,7 @@ use scene::{Follow, Link, Role, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{EdgeState, FleetInfo, ScalarTrajectory, StepRecord, wrap};
+use vocabulary::{EdgeState, EventKind, EventRecord, FleetInfo, ScalarTrajectory, StepRecord, math, wrap};
 
 /// What is selected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -245,11 +246,14 @@ impl AppState {
     /// The record at the shown time, with the current set points: a paused run shows edits at once.
     pub fn shown(&self) -> Option<Arc<StepRecord>> {
         let record = self.record()?;
-        if self.cursor.is_some() || self.playing {
+        if self.cursor.is_some() || self.playing || !self.edits_to_come(&record) {
             return Some(record);
         }
-        let wanted: Vec<Option<[f64; 2]>> =
-            (0..record.edges.len()).map(|edge| self.set_point(edge)).collect();
+        let wanted = |(edge, state): (usize, &EdgeState)| {
+            let [distance, bearing] = self.set_point(edge)?;
+            Some([distance, wrap(bearing - state.behind)])
+        };
+        let wanted: Vec<Option<[f64; 2]>> = record.edges.iter().enumerate().map(wanted).collect();
         let stale =
             |(state, wanted): (&EdgeState, &Option<[f64; 2]>)| wanted.is_some_and(|w| w != state.set_point);
         if !record.edges.iter().zip(&wanted).any(stale) {
@@ -262,6 +266,15 @@ impl AppState {
             state.error = [distance - state.relative.distance, wrap(bearing - state.relative.bearing)];
         }
         Some(Arc::new(record))
+    }
+
+    /// Whether the run has yet to take over an edit, so that `record` knows nothing of it.
+    fn edits_to_come(&self, record: &StepRecord) -> bool {
+        let (Some(history), Some(branch)) = (&self.history, self.branches.get(self.branch)) else {
+            return false;
+        };
+        let sample = history.sample(record.snapshot.time);
+        !self.sent.is_empty() || branch.texts.iter().any(|(at, _)| *at > sample)
     }
 
     /// The shown time, s.
@@ -291,15 +304,61 @@ impl AppState {
         self.follower(edge).map(|(robot, name, follow)| (edge, robot, name, follow))
     }
 
-    /// The current set point of an edge, m and rad.
+    /// The robot whose safety filter panels tune: the selected one, or else the first that has a filter, or the first
+    /// follower.
+    pub fn filtered_robot(&self) -> Option<(usize, &scene::Robot)> {
+        let robots = &self.scene_now()?.robots;
+        let follows = |robot: &scene::Robot| robot.role.follow().is_some();
+        let filtered = || robots.iter().position(|robot| robot.safety.acts(!follows(robot)));
+        let index = self.chosen_robot().or_else(filtered).or_else(|| robots.iter().position(follows));
+        robots.get(index.unwrap_or(0)).map(|robot| (index.unwrap_or(0), robot))
+    }
+
+    /// The current set point of an edge, m and rad, as the scene has it: against the heading that its bearing is held
+    /// against, which may be behind the leader's own. One that has changed its leader has the place that this gave it.
     pub fn set_point(&self, edge: usize) -> Option<[f64; 2]> {
-        let (_, _, follow) = self.follower(edge)?;
-        let now = self.record().and_then(|record| Some(record.edges.get(edge)?.set_point));
+        let (robot, name, follow) = self.follower(edge)?;
+        let given = self.given_place(robot, name);
+        let now = self.record().and_then(|record| {
+            let state = record.edges.get(edge)?;
+            Some([state.set_point[0], wrap(state.set_point[1] + state.behind)])
+        });
         let value = |channel: &ScalarTrajectory, now: Option<f64>| match channel {
-            ScalarTrajectory::Constant(value) => Some(*value),
+            ScalarTrajectory::Constant(value) if !given => Some(*value),
             _ => now,
         };
         Some([value(&follow.distance, now.map(|n| n[0]))?, value(&follow.bearing, now.map(|n| n[1]))?])
+    }
+
+    /// Whether an event has given `robot` its place, and nobody has moved it since.
+    fn given_place(&self, robot: usize, name: &str) -> bool {
+        let (Some(history), Some(branch)) = (&self.history, self.branches.get(self.branch)) else {
+            return false;
+        };
+        let time = self.time() + 1e-9;
+        let follows =
+            |event: &EventRecord| event.robot == robot && event.kind == EventKind::Follow && event.happened();
+        let events = history.events(self.branch).iter().rev();
+        let mut given = events.filter(|(at, event)| *at <= time && follows(event)).map(|(at, _)| *at);
+        let Some(given) = given.next() else { return false };
+        let moves = |set: &String| {
+            let rest = set.strip_prefix("robots.").and_then(|rest| rest.strip_prefix(name));
+            rest.is_some_and(|rest| rest.starts_with(".distance=") || rest.starts_with(".bearing="))
+        };
+        // A change holds from the sample after the one that is shown.
+        let until = time + history.period();
+        let moved =
+            |change: &BranchChange| (given..=until).contains(&change.time) && change.set.iter().any(moves);
+        self.sent.is_empty() && !branch.changes.iter().any(moved)
+    }
+
+    /// The set point of an edge that puts its place there, m, at the moment of `record`; as [`AppState::set_point`].
+    pub fn set_point_at(&self, record: &StepRecord, edge: usize, place: [f64; 2]) -> Option<[f64; 2]> {
+        let leader = record.edge(self.fleet()?, edge)?.leader;
+        let leader = record.snapshot.robots.get(leader)?.motion.pose;
+        let heading = leader.heading - record.edges.get(edge)?.behind;
+        let [dx, dy] = [place[0] - leader.x, place[1] - leader.y];
+        Some([math::hypot(dx, dy), wrap(math::atan2(dy, dx) - heading)])
     }
 
     /// The selected edge, or that of the selected robot.

@@ -52,6 +52,16 @@ impl SliderRow {
         });
     }
 
+    /// A row for an angle in rad, shown in degrees, and its default.
+    pub(crate) fn degrees(&self, ui: &mut Ui, value: f64, default: f64, out: &mut Vec<Action>) {
+        let shown = toml_number(default.to_degrees());
+        self.frame(ui, value != default, &shown, out, |ui, out| {
+            // A value that is not dragged stays as it is written.
+            let degrees = (value.to_degrees() * 1e9).round() / 1e9;
+            self.edit(ui, degrees, self.symbol.name, out, |new| format!("\"{} deg\"", toml_number(new)));
+        });
+    }
+
     /// A row for a pair: one slider if both are equal and `apart` is not set, else two.
     pub(crate) fn two(
         &self,
@@ -142,6 +152,12 @@ impl SliderRow {
         response.widget_info(|| egui::WidgetInfo::slider(true, *value, name));
         response.on_hover_ui(|ui| self.symbol.tip(ui))
     }
+}
+
+/// Gives a number its accessible name and value.
+pub(crate) fn named(response: &egui::Response, value: f64, name: &str) {
+    response.widget_info(|| egui::WidgetInfo::drag_value(true, value));
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::SpinButton, true, name));
 }
 
 /// Emits an action when a slider is released.

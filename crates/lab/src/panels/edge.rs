@@ -1,22 +1,33 @@
 //! The selected edge: its set point in numbers, and the shape of the whole formation.
 
+use super::controls::{named, released};
 use super::empty_panel;
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::numbers::fixed;
 use crate::symbols;
-use eframe::egui::{self, DragValue, RichText, Ui, WidgetInfo};
-use vocabulary::ScalarTrajectory;
+use eframe::egui::{self, DragValue, RichText, Ui};
+use vocabulary::{ScalarTrajectory, wrap};
 
 /// The selected edge.
 pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some((edge, (_, name, follow))) =
+    let Some((edge, (robot, name, follow))) =
         app_state.chosen_edge().and_then(|e| Some((e, app_state.follower(e)?)))
     else {
         return empty_panel(ui, app_state, "Click a follower or its edge.");
     };
-    ui.label(RichText::new(format!("{} → {name}", follow.leader)).strong());
-    let state = app_state.shown().and_then(|record| record.edges.get(edge).copied());
+    let record = app_state.shown();
+    let pair = record.as_ref().zip(app_state.fleet()).map(|(record, fleet)| record.edge(fleet, edge));
+    let leader = match (pair, app_state.fleet()) {
+        (Some(Some(pair)), Some(fleet)) => fleet.pair(pair)[0].to_owned(),
+        (Some(None), _) => {
+            ui.label(RichText::new(format!("{name} follows nobody")).strong());
+            return;
+        }
+        _ => follow.leader.clone(),
+    };
+    ui.label(RichText::new(format!("{leader} → {name}")).strong());
+    let state = record.and_then(|record| record.edges.get(edge).copied());
     let [distance, bearing] = app_state.set_point(edge).unwrap_or_default();
     let (mut new_distance, mut new_degrees) = (distance, bearing.to_degrees());
     egui::Grid::new("set point").num_columns(3).spacing([8.0, 4.0]).show(ui, |ui| {
@@ -25,7 +36,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         let response =
             ui.add(drag.custom_formatter(|value, _| format!("{} m", fixed(value, 2))).custom_parser(number));
         named(&response, new_distance, symbols::DISTANCE.name);
-        super::controls::released(&response, out);
+        released(&response, out);
         ui.weak(state.map_or_else(String::new, |s| format!("is {} m", fixed(s.relative.distance, 3))));
         ui.end_row();
         symbols::BEARING.label(ui);
@@ -33,10 +44,11 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         let response =
             ui.add(drag.custom_formatter(|value, _| format!("{}°", fixed(value, 1))).custom_parser(number));
         named(&response, new_degrees, symbols::BEARING.name);
-        super::controls::released(&response, out);
-        ui.weak(
-            state.map_or_else(String::new, |s| format!("is {}°", fixed(s.relative.bearing.to_degrees(), 1))),
-        );
+        released(&response, out);
+        ui.weak(state.map_or_else(String::new, |s| {
+            let bearing = wrap(s.relative.bearing + s.behind);
+            format!("is {}°", fixed(bearing.to_degrees(), 1))
+        }));
         ui.end_row();
     });
     if new_distance != distance || (new_degrees - bearing.to_degrees()).abs() > 1e-9 {
@@ -61,7 +73,10 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     if let Some(state) = state {
         ui.weak(format!("error {} m, {}°", fixed(state.error[0], 3), fixed(state.error[1].to_degrees(), 2)));
         if state.limited {
-            ui.colored_label(ui.visuals().warn_fg_color, "a limit cuts the command");
+            let filtered = app_state.record().is_some_and(|record| record.is_filtered(robot));
+            let cuts =
+                if filtered { "its safety filter moves the command" } else { "a limit cuts the command" };
+            ui.colored_label(ui.visuals().warn_fg_color, cuts);
         }
     }
     shape(ui, out);
@@ -110,11 +125,6 @@ fn ahead(ui: &mut Ui, app_state: &AppState, edge: usize) {
         let text = format!("contact at {} s: {a} and {b}", fixed(*time, 1));
         ui.colored_label(ui.visuals().error_fg_color, text);
     }
-}
-
-fn named(response: &egui::Response, value: f64, name: &str) {
-    response.widget_info(|| WidgetInfo::drag_value(true, value));
-    response.widget_info(|| WidgetInfo::labeled(egui::Role::SpinButton, true, name));
 }
 
 /// A number as people type it, with its unit or without.

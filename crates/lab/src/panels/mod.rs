@@ -10,6 +10,7 @@ pub mod formation;
 mod icons;
 pub mod law;
 pub mod log;
+pub mod safety;
 pub mod sensing;
 pub mod time_bar;
 pub mod world;

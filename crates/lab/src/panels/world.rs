@@ -26,7 +26,7 @@ const ACCELERATION_MAX: SliderRow =
 
 /// Limits of the selected follower.
 pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
-    let Some((_, robot, name, _)) = app_state.tuned_follower() else {
+    let Some((_, robot, name, follow)) = app_state.tuned_follower() else {
         return empty_panel(ui, app_state, "There is no follower.");
     };
     let Some(vehicle) = app_state.scene_now().and_then(|scene| scene.robots.get(robot)).map(|r| r.vehicle)
@@ -35,7 +35,11 @@ pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     };
     scope(ui, app_state, name, out);
     let default = Vehicle::ready_made(vehicle.kind);
-    SPEED_MIN.one(ui, vehicle.speed_min, default.speed_min, out);
+    if follow.law.standing {
+        ui.weak("It stops with its leader, so it has no minimum speed.");
+    } else {
+        SPEED_MIN.one(ui, vehicle.speed_min, default.speed_min, out);
+    }
     SPEED_MAX.one(ui, vehicle.speed_max, default.speed_max, out);
     TURN_MAX.one(ui, vehicle.turn_rate_max, default.turn_rate_max, out);
     if vehicle.acceleration_max.is_finite() {

@@ -3,13 +3,15 @@
 use metrics::clearance::Clearance;
 use rendering::Trail;
 use std::sync::Arc;
-use vocabulary::{EventRecord, FleetInfo, StepRecord};
+use vocabulary::{BarrierState, EventRecord, FleetInfo, SafetyState, StepRecord};
 
 /// Maximum memory of the records of a branch, bytes.
 const MOST_BYTES: usize = 96 << 20;
 /// Limits of the number of records of a branch, whatever their size.
 const MOST_MOMENTS: usize = 20_000;
 const LEAST_MOMENTS: usize = 600;
+/// About as many barriers as a filter has at once.
+const FEW_BARRIERS: usize = 8;
 /// Initial time between two kept trails, s; it doubles when there are too many.
 const TRAIL_EVERY: f64 = 2.0;
 const MOST_TRAILS: usize = 40;
@@ -96,7 +98,7 @@ impl History {
     /// Adds the next record of a branch.
     pub fn push(&mut self, branch: usize, record: StepRecord) {
         let sample = self.sample(record.snapshot.time);
-        let most = self.most_moments();
+        let most = self.most_moments(&record);
         if let Some(past) = self.past.get_mut(branch) {
             // A branch receives its first record again; it may have it already.
             if past.is_known(&record) {
@@ -228,11 +230,13 @@ impl History {
         self.past.get(branch).map_or(&[], |past| &past.events)
     }
 
-    fn most_moments(&self) -> usize {
+    fn most_moments(&self, record: &StepRecord) -> usize {
         let robots = self.fleet.robots.len() * size_of::<vocabulary::RobotState>();
         let edges = self.fleet.edges.len() * size_of::<vocabulary::EdgeState>();
         let props = self.fleet.props.len() * size_of::<vocabulary::Placement>();
-        (MOST_BYTES / (robots + edges + props + 200)).clamp(LEAST_MOMENTS, MOST_MOMENTS)
+        let safety =
+            record.safety.len() * (size_of::<SafetyState>() + FEW_BARRIERS * size_of::<BarrierState>());
+        (MOST_BYTES / (robots + edges + props + safety + 200)).clamp(LEAST_MOMENTS, MOST_MOMENTS)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::app_state::AppState;
 use crate::session::prediction::Prediction;
+use formation::Heading;
 use formation::feasible::infeasible;
 use vocabulary::math;
 use vocabulary::{Limits, MotionInput, Pose, StepRecord};
@@ -22,6 +23,8 @@ pub struct PlaceConstraints {
     pub distance_min: f64,
     /// Sensor range, m, and largest viewing angle, rad; `None` if it senses the truth.
     pub sight: Option<[f64; 2]>,
+    /// Against what heading the bearing is held, and how far that is behind the leader's now, rad.
+    pub heading: (Heading, f64),
     /// Positions of other robots in the leader's frame, m, and their least distances, m.
     pub others: Vec<([f64; 2], f64)>,
 }
@@ -35,6 +38,10 @@ impl PlaceConstraints {
 
     fn refuses_at(&self, place: [f64; 2], [speed, turn_rate]: [f64; 2]) -> bool {
         let leader = MotionInput { speed, turn_rate, ..MotionInput::default() };
+        // A place turns against its leader as its heading's lag changes.
+        let (heading, now) = self.heading;
+        let lag = heading.filter().map_or(0.0, |filter| now - filter.steady(speed, turn_rate));
+        let place = Pose::new(0.0, 0.0, lag).world_from_body(place[0], place[1]);
         if infeasible(place, &leader, &self.limits, self.distance_min).is_some() {
             return true;
         }
@@ -49,10 +56,9 @@ impl PlaceConstraints {
 /// The leader of `edge` and the map around it, as [`shade`] returns it.
 pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(Pose, Vec<f32>)> {
     let fleet = app_state.fleet()?;
-    let ends = *fleet.edges.get(edge)?;
+    let ends = record.edge(fleet, edge)?;
     let (robot, _, follow) = app_state.follower(edge)?;
     let scene = app_state.scene_now()?;
-    let vehicle = &scene.robots.get(robot)?.vehicle;
     let leader = record.snapshot.robots.get(ends.leader)?;
     let measures = follow.sensing.kind != scene::SensingKind::Truth;
     let camera_model = &fleet.robots.get(robot)?.camera_model;
@@ -62,16 +68,16 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
     let half_picture = math::atan(0.5 * f64::from(camera_model.width) / camera_model.focal);
     let body = &fleet.robots[robot].body;
     let reach = math::hypot(body.length, body.width);
-    let others =
-        fleet.edges.iter().enumerate().filter(|(k, other)| *k != edge && other.leader == ends.leader);
-    let places = others.filter_map(|(k, _)| {
-        let [distance, bearing] = record.edges.get(k)?.set_point;
+    let others = record.pairs(fleet).filter(|(k, other, _)| *k != edge && other.leader == ends.leader);
+    let places = others.filter_map(|(_, _, state)| {
+        let [distance, bearing] = state.set_point;
         Some(([distance * math::cos(bearing), distance * math::sin(bearing)], reach))
     });
     let wanted = PlaceConstraints {
-        limits: vehicle.limits(),
+        limits: scene.robots.get(robot)?.limits(),
         distance_min: follow.law.distance_min,
         sight: measures.then_some([far, scene.vision.pan_max + half_picture]),
+        heading: (simulation::edge_law(follow).law.heading, record.edges.get(edge)?.behind),
         others: places.chain([([0.0; 2], reach)]).collect(),
     };
     let motions =
@@ -103,9 +109,16 @@ pub fn shade(wanted: &PlaceConstraints, motions: &[[f64; 2]]) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use formation::PathFilter;
 
     fn wanted() -> PlaceConstraints {
-        PlaceConstraints { limits: Limits::PAPER, distance_min: 0.1, sight: None, others: vec![] }
+        PlaceConstraints {
+            limits: Limits::PAPER,
+            distance_min: 0.1,
+            sight: None,
+            heading: (Heading::Leader, 0.0),
+            others: vec![],
+        }
     }
 
     #[test]
@@ -124,6 +137,21 @@ mod tests {
         assert!(measuring.refuses([-4.5, 0.0], &[[1.0, 0.0]]), "too far");
         assert!(measuring.refuses([2.0, 0.0], &[[1.0, 0.0]]), "behind the camera");
         assert!(!measuring.refuses([-2.0, 1.0], &[[1.0, 0.0]]));
+    }
+
+    #[test]
+    fn a_place_turns_with_its_headings_lag() {
+        let filter = PathFilter { length: 1.0, lag: 1.0 };
+        let turned = PlaceConstraints { heading: (Heading::Path(filter), 0.0), ..wanted() };
+        let bend = [1.0, 0.3];
+        let place =
+            |distance: f64, bearing: f64| [distance * math::cos(bearing), distance * math::sin(bearing)];
+        for bearing in [-2.5, -1.2, 0.4, 2.0] {
+            for distance in [1.0, 2.0, 2.6, 3.2] {
+                let refused = turned.refuses(place(distance, bearing), &[bend]);
+                assert_eq!(refused, wanted().refuses(place(distance, bearing - 0.3), &[bend]));
+            }
+        }
     }
 
     #[test]

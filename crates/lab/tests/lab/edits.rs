@@ -1,7 +1,7 @@
 //! Edits while the run goes, and in its past: branches, the text that holds on each, and the scene that runs alike.
 
 use crate::commands::{gains, point, set, tune};
-use crate::common::{Rig, THREE, app_state, run, scene};
+use crate::common::{Rig, THREE, app_state, run, scene, with};
 use lab::action::Action;
 use lab::app_state::AppState;
 use lab::session::branches::{BranchChange, Branches};
@@ -10,6 +10,7 @@ use lab::session::runner::{RunEvent, RunRequest};
 use lab::session::scene_draft::Effect;
 use simulation::Simulation;
 use std::sync::Arc;
+use vocabulary::math;
 
 #[test]
 fn an_edit_in_the_past_makes_another_future() {
@@ -220,4 +221,37 @@ fn a_value_that_is_dragged_is_built_once() {
     app_state.act(&Action::SetPoint { edge: 0, distance: 3.0, bearing: 2.3 });
     assert!(matches!(app_state.requests.as_slice(), [.., RunRequest::Fork { .. }, RunRequest::Change(_)]));
     assert_eq!(builds() - before, 1);
+}
+
+/// A ring lies where its follower is driven to, and a drag gives the key the value that puts it there.
+#[test]
+fn a_set_point_against_a_path_is_where_the_follower_is_driven_to() {
+    let text = with(THREE, &[("law.heading", "\"path\""), ("law.heading_lag", "0.5")]);
+    let mut rig = Rig::new(&text);
+    rig.steps(900);
+    let rings = |rig: &Rig| {
+        let record = rig.app_state.shown().expect("a moment");
+        rendering::set_points(rig.app_state.history.as_ref().expect("a run").fleet(), &record)
+    };
+    let record = rig.app_state.record().expect("a moment");
+    let (state, follower) = (record.edges[0], record.snapshot.robots[1].motion.pose);
+    // On a circle of 3.33 m.
+    assert!((state.behind - 0.5 * 0.3).abs() < 2e-3, "{}", state.behind);
+    let ring = rings(&rig)[0].expect("a ring");
+    assert!(math::hypot(ring[0] - follower.x, ring[1] - follower.y) < 0.02, "{ring:?} {follower:?}");
+    let leader = record.snapshot.robots[0].motion.pose;
+    let rigid = leader.polar(2.0, 135f64.to_radians());
+    assert!(math::hypot(rigid[0] - follower.x, rigid[1] - follower.y) > 0.25);
+    // Before the run has taken it over, and after; keys are written to a hundredth of a degree.
+    let place = [ring[0] + 0.3, ring[1] - 0.2];
+    let [distance, bearing] = rig.app_state.set_point_at(&record, 0, place).expect("a set point");
+    rig.app_state.act(&Action::SetPoint { edge: 0, distance, bearing });
+    let near = |ring: Option<[f64; 2]>| {
+        ring.is_some_and(|at| math::hypot(at[0] - place[0], at[1] - place[1]) < 5e-4)
+    };
+    assert!(near(rings(&rig)[0]), "{:?}", rings(&rig));
+    rig.steps(1);
+    let moved = rings(&rig)[0].expect("a ring");
+    let travelled = 0.012 + 0.01;
+    assert!(math::hypot(moved[0] - place[0], moved[1] - place[1]) < travelled, "{moved:?}");
 }

@@ -1,6 +1,6 @@
 //! Events by hand: what happens to a robot now is part of the run, and of the scene that repeats it.
 
-use crate::common::{Rig, THREE, run, scene};
+use crate::common::{Rig, THREE, run, scene, with};
 use lab::action::{Action, Happens};
 use lab::session::branches::script;
 use scene::Failure;
@@ -12,9 +12,10 @@ fn to(rig: &mut Rig, time: f64) {
     rig.steps(missing.round() as usize);
 }
 
-/// Three robots, whose followers may be anywhere beside their leader.
-fn turning() -> String {
-    format!("{THREE}\n[hand_over]\nbearing_max = \"180 deg\"\n")
+/// Three robots that drive straight on, whose followers may be anywhere beside their leader.
+fn straight() -> String {
+    let path = "{ kind = \"constant\", speed = 1.0 }";
+    with(THREE, &[("robots.leader.path", path), ("hand_over.bearing_max", "180 deg")])
 }
 
 fn events(rig: &Rig) -> Vec<(f64, EventRecord)> {
@@ -32,7 +33,7 @@ fn kept(base: &str, rig: &mut Rig) -> String {
 
 #[test]
 fn a_hand_over_by_hand_happens_at_the_next_sample_and_is_kept() {
-    let text = turning();
+    let text = straight();
     let mut rig = Rig::new(&text);
     to(&mut rig, 1.0);
     rig.act(&[Action::Happen { robot: 2, what: Happens::Follows(1) }]);
@@ -67,7 +68,7 @@ fn a_hand_over_by_hand_happens_at_the_next_sample_and_is_kept() {
 
 #[test]
 fn what_cannot_be_is_refused_and_the_run_goes_on() {
-    let text = turning();
+    let text = straight();
     let mut rig = Rig::new(&text);
     to(&mut rig, 0.5);
     // A ring is known before the run is asked.
@@ -102,4 +103,27 @@ fn a_lead_robot_may_come_to_follow_by_hand() {
     to(&mut rig, 1.5);
     let record = rig.app_state.record().expect("a record");
     assert_eq!(record.leaders, [Some(0), Some(0), Some(2)], "{:?}", events(&rig));
+}
+
+/// After a hand-over the handle is where the follower is driven to, beside its new leader, and can be dragged there.
+#[test]
+fn the_place_of_a_robot_that_has_changed_its_leader_can_be_moved() {
+    let text = straight();
+    let mut rig = Rig::new(&text);
+    to(&mut rig, 1.0);
+    rig.act(&[Action::Happen { robot: 2, what: Happens::Follows(1) }]);
+    to(&mut rig, 2.0);
+    let record = rig.app_state.record().expect("a record");
+    let place = record.edges[1].set_point;
+    let found = rig.app_state.set_point(1).expect("a set point");
+    assert!((found[0] - place[0]).abs() < 1e-9 && (found[1] - place[1]).abs() < 1e-9, "{found:?} {place:?}");
+    rig.act(&[Action::SetPoint { edge: 1, distance: 1.5, bearing: -2.0 }]);
+    let found = rig.app_state.set_point(1).expect("a set point");
+    assert!((found[0] - 1.5).abs() < 1e-9 && (found[1] + 2.0).abs() < 1e-4, "{found:?}");
+    to(&mut rig, 14.0);
+    let record = rig.app_state.record().expect("a record");
+    let state = record.edges[1];
+    assert!((state.set_point[0] - 1.5).abs() < 0.01 && (state.set_point[1] + 2.0).abs() < 0.01, "{state:?}");
+    assert_eq!(record.leaders[1], Some(1));
+    kept(&text, &mut rig);
 }

@@ -4,7 +4,7 @@ use crate::common::{THREE, scene, with};
 use lab::session::prediction::{Prediction, Predictor, Trouble};
 use simulation::Simulation;
 use std::time::Duration;
-use vocabulary::{EntityId, Relative};
+use vocabulary::{EntityId, Relative, math};
 
 /// A run of a scene, `samples` samples old.
 fn run(text: &str, samples: u64) -> Simulation {
@@ -77,6 +77,33 @@ fn what_is_foreseen_is_what_comes() {
                 assert!(found.is_some(), "robot {robot} never comes to {place:?}");
             }
         }
+    }
+}
+
+#[test]
+fn a_filter_is_foreseen() {
+    let mut run = run(include_str!("../../../../scenes/pillar.toml"), 400);
+    let prediction = ahead(&run, 8.0);
+    let place = |robot: &vocabulary::RobotState| [robot.motion.pose.x, robot.motion.pose.y];
+    let mut driven: Vec<_> = run.record().snapshot.robots.iter().map(|robot| vec![place(robot)]).collect();
+    let mut filtered = 0;
+    for _ in 0..800 {
+        let record = run.next_record().expect("a moment");
+        filtered += record.safety.iter().filter(|state| state.moved > 0.1).count();
+        for (driven, robot) in driven.iter_mut().zip(&record.snapshot.robots) {
+            driven.push(place(robot));
+        }
+    }
+    assert!(filtered > 50, "a filter moves {filtered} commands");
+    for (path, driven) in prediction.paths.iter().zip(&driven) {
+        let off = path.iter().map(|point| {
+            let off = |place: &[f64; 2]| math::hypot(place[0] - point.at[0], place[1] - point.at[1]);
+            driven.iter().map(off).fold(f64::INFINITY, f64::min)
+        });
+        assert!(path.len() > 100 && off.fold(0.0, f64::max) < 1e-3);
+    }
+    for (end, driven) in prediction.end.iter().zip(&driven) {
+        assert_eq!([end.x, end.y], driven[800]);
     }
 }
 

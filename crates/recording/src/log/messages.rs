@@ -42,6 +42,7 @@ impl Record for EdgeState {
     fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
         f.several(["distance_m", "bearing_rad", "view_angle_rad"], coordinates(&mut self.relative))?;
         f.several(["set_distance_m", "set_bearing_rad"], self.set_point.each_mut())?;
+        f.number("heading_behind_rad", &mut self.behind)?;
         f.several(["error_distance_m", "error_bearing_rad"], self.error.each_mut())?;
         f.number("asked_acceleration_m_s2", &mut self.asked.acceleration)?;
         f.number("asked_turn_rate_rad_s", &mut self.asked.turn_rate)?;

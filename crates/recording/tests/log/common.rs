@@ -106,6 +106,7 @@ pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRec
         [edge.asked.acceleration, edge.asked.turn_rate] = n.many();
         [edge.applied.acceleration, edge.applied.turn_rate] = n.many();
         edge.estimate = n.many();
+        edge.behind = n.next();
         edge.sight = [
             TrackingState::Truth,
             TrackingState::Waiting,

@@ -14,7 +14,7 @@ use crate::picture_plan::{Area, overlap};
 use crate::{Viewpoint, camera::viewpoint::Tile};
 use glam::{DVec2, DVec3, Vec2};
 use vocabulary::math;
-use vocabulary::{Condition, RobotInfo, RobotState};
+use vocabulary::{Condition, EntityId, RobotInfo, RobotState, SafetyState};
 
 /// Distance of words from the picture's edge at scale 1, pixels.
 pub(crate) const MARGIN: f32 = 24.0;
@@ -237,42 +237,82 @@ fn trouble(condition: Condition) -> Option<&'static str> {
 /// A command that a filter moves by less than this shows nothing, m/s²: names that flicker cannot be read.
 const HELD: f64 = 0.05;
 
-/// What the filter of a robot keeps it off, by name.
-fn held_by<'a>(context: &PictureContext<'a>, robot: usize) -> Option<&'a str> {
+/// What the filter of a robot did, where pictures show it.
+fn filtered<'a>(context: &PictureContext<'a>, robot: usize) -> Option<&'a SafetyState> {
     let states = context.style.barriers.then_some(&context.record.safety)?;
-    let state = states.iter().find(|state| state.robot == robot && state.moved > HELD)?;
-    let acting = state.acting.iter().find(|c| !c.is_limit() && !c.is_view())?;
-    Some(acting.name(context.fleet))
+    states.iter().find(|state| state.robot == robot)
+}
+
+/// What the filter of a robot keeps it off, by name.
+fn held_by(context: &PictureContext<'_>, state: &SafetyState) -> Option<String> {
+    if state.moved <= HELD {
+        return None;
+    }
+    let acting = state.acting.iter().find(|constraint| !constraint.is_limit())?;
+    if !acting.is_view() {
+        return Some(format!("off {}", acting.name(context.fleet)));
+    }
+    let edge = context.fleet.edges.iter().find(|edge| edge.follower == state.robot)?;
+    Some(format!("keeps {} in view", context.fleet.name(EntityId::Robot(edge.leader))))
 }
 
 fn names(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Window<'_>) {
     let crowded = context.fleet.robots.len() > 24;
-    let members = context.record.snapshot.robots.iter().zip(&context.fleet.robots);
-    for (index, (robot, member)) in members.enumerate() {
-        if !robot.is_present() {
-            continue;
+    // Who is in trouble is named first, while there is room.
+    for alarming in [true, false] {
+        for index in 0..context.fleet.robots.len().min(context.record.snapshot.robots.len()) {
+            if !context.record.snapshot.robots[index].is_present() {
+                continue;
+            }
+            let trouble = trouble_of(context, index);
+            // In a crowd only those who are in trouble are named.
+            if trouble.is_some() == alarming && (alarming || !crowded) {
+                name(words, context, window, index, trouble);
+            }
         }
-        let trouble = trouble(robot.condition);
-        // In a crowd only those who are in trouble are named.
-        if crowded && trouble.is_none() {
-            continue;
+    }
+}
+
+/// What keeps a robot from driving, or from doing anything that is safe, in words.
+fn trouble_of(context: &PictureContext<'_>, index: usize) -> Option<String> {
+    let condition = context.record.snapshot.robots[index].condition;
+    let conflict = || filtered(context, index)?.conflict_words(context.fleet);
+    trouble(condition).map(str::to_owned).or_else(conflict)
+}
+
+fn name(
+    words: &mut LabelPlacer<'_>,
+    context: &PictureContext<'_>,
+    window: Window<'_>,
+    index: usize,
+    trouble: Option<String>,
+) {
+    let (robot, member) = (&context.record.snapshot.robots[index], &context.fleet.robots[index]);
+    let (middle, size) = middle(robot, member);
+    let Some(at) = window.pixel(middle) else { return };
+    let alarming = trouble.is_some();
+    let said = trouble.or_else(|| held_by(context, filtered(context, index)?));
+    let ink = if alarming { Ink::ALARM } else { Ink::LIGHT.faded(context.detail.max(0.6)) };
+    let pixel = window.camera.metres_per_pixel(middle, f64::from(window.tile.height));
+    let metre = (size / pixel) as f32;
+    let away = 0.27 * metre + words.scaled(9.0);
+    // Where there is no room for all of it, the name alone.
+    let whole = said.map(|said| format!("{} · {said}", member.name));
+    for text in whole.into_iter().chain([member.name.clone()]) {
+        let width = words.width(&text, 13.0, true);
+        let side = 0.25 * metre + 0.5 * width + words.scaled(8.0);
+        let near = [Vec2::new(0.0, -away), Vec2::new(0.0, away), Vec2::new(side, 0.0), Vec2::new(-side, 0.0)];
+        // Trouble is told farther off, too, and to either side, rather than not at all.
+        let lines: u8 = if alarming { 6 } else { 0 };
+        let far = (0..3 * lines).flat_map(|k| {
+            let (line, shift) = (f32::from(k / 3), [0.0, 0.5, -0.5][usize::from(k % 3)] * width);
+            let off = away + line * words.scaled(17.0);
+            [Vec2::new(shift, -off), Vec2::new(shift, off)]
+        });
+        let places: Vec<_> = near.into_iter().chain(far).map(|place| at + place).collect();
+        if words.try_write(&text, &places, 13.0, &window.tile, true, ink) {
+            return;
         }
-        let (middle, size) = middle(robot, member);
-        let Some(at) = window.pixel(middle) else { continue };
-        let held = held_by(context, index);
-        let text = match (trouble, held) {
-            (Some(word), _) => format!("{} · {word}", member.name),
-            (None, Some(barrier)) => format!("{} · off {barrier}", member.name),
-            (None, None) => member.name.clone(),
-        };
-        let pixel = window.camera.metres_per_pixel(middle, f64::from(window.tile.height));
-        let metre = (size / pixel) as f32;
-        let away = 0.27 * metre + words.scaled(9.0);
-        let side = 0.25 * metre + 0.5 * words.width(&text, 13.0, true) + words.scaled(8.0);
-        let places =
-            [Vec2::new(0.0, -away), Vec2::new(0.0, away), Vec2::new(side, 0.0), Vec2::new(-side, 0.0)];
-        let ink = if trouble.is_some() { Ink::ALARM } else { Ink::LIGHT.faded(context.detail.max(0.6)) };
-        words.try_write(&text, &places.map(|p| at + p), 13.0, &window.tile, true, ink);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Law, Observer, Path, Proximity, Safety, Sensing, Vehicle};
 use crate::vehicle::written;
 use serde::{Serialize, Serializer};
-use vocabulary::{Pose, ScalarTrajectory};
+use vocabulary::{Limits, Pose, ScalarTrajectory};
 
 /// One robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -27,6 +27,15 @@ pub struct Robot {
     /// Whether it leads or follows.
     #[serde(flatten)]
     pub role: Role,
+}
+
+impl Robot {
+    /// Bounds on speed, turn rate and acceleration. A follower that stands with its leader has no least speed.
+    pub fn limits(&self) -> Limits {
+        let limits = self.vehicle.limits();
+        let stands = self.role.follow().is_some_and(|follow| follow.law.standing);
+        if stands { Limits { speed_min: 0.0, ..limits } } else { limits }
+    }
 }
 
 /// Whether a robot leads or follows.

@@ -75,7 +75,8 @@ pub struct Examiner {
     edges: Vec<CertifiedStretch>,
     /// Stretches that are over.
     closed: Vec<Certificate>,
-    leads_on_wheels: Vec<bool>,
+    /// Lead robots that do not drive exactly as their path says: on wheels, or with a safety filter.
+    chasing: Vec<bool>,
     wheels: Vec<bool>,
     mode: TimeMode,
     period: f64,
@@ -127,7 +128,11 @@ impl Examiner {
     /// else its memory does not grow with the run.
     pub fn new(scene: &Scene, simulation: &Simulation, keeps: bool) -> Self {
         let wheels: Vec<bool> = scene.robots.iter().map(|robot| robot.vehicle.kind.has_wheels()).collect();
-        let leads = &simulation.fleet().robots;
+        let chasing = scene
+            .robots
+            .iter()
+            .zip(&wheels)
+            .map(|(robot, wheels)| robot.role.follow().is_none() && (*wheels || robot.safety.acts(true)));
         Self {
             edges: simulation
                 .formation()
@@ -137,7 +142,7 @@ impl Examiner {
                 .map(|(law, edge)| CertifiedStretch::of(law, edge.leader, keeps))
                 .collect(),
             closed: Vec::new(),
-            leads_on_wheels: leads.iter().zip(&wheels).map(|(m, wheels)| m.leads && *wheels).collect(),
+            chasing: chasing.collect(),
             wheels,
             mode: simulation.mode(),
             period: simulation.period(),
@@ -233,18 +238,23 @@ impl Examiner {
         };
         let mut drives: Vec<MotionInput> = record.snapshot.robots.iter().enumerate().map(motion).collect();
         for (robot, trajectory) in simulation.formation().leads() {
-            if !self.leads_on_wheels.get(*robot).copied().unwrap_or(true) {
+            if !self.chasing.get(*robot).copied().unwrap_or(true) {
                 drives[*robot] = trajectory.at(record.snapshot.time);
             }
         }
         drives
     }
 
-    /// Whether an edge's leader has just done what no smooth leader does: it follows, and its command stepped.
+    /// Whether an edge's leader has just done what no smooth leader does: it is commanded, and its command stepped.
     fn jumps(&self, simulation: &Simulation, edge: Edge, drives: &[MotionInput]) -> bool {
         let formation = simulation.formation();
-        let Some(above) = formation.graph().edge_of(edge.leader) else { return false };
+        let above = formation.graph().edge_of(edge.leader);
+        let filtered = |robot: usize| simulation.record().safety.iter().any(|state| state.robot == robot);
+        if above.is_none() && !filtered(edge.leader) {
+            return false;
+        }
         if self.mode == TimeMode::Continuous {
+            let Some(above) = above else { return false };
             let law = &formation.laws()[above].law;
             let sign = law.kind != LawKind::FullState && law.switching == Switching::Sign;
             return sign || simulation.record().edges[above].limited;
@@ -270,6 +280,7 @@ fn instant(
     let limits = simulation.formation().limits(edge.follower);
     let speed = record.snapshot.robots[edge.follower].motion.speed;
     let observes = law.law.kind == LawKind::OutputFeedback;
+    let diverted = record.is_filtered(edge.follower);
     let mut set_point = law.set_point.at(time);
     // It moves with the heading it is held against, and where its follower stands.
     set_point.rate = simulation.decision(index).set_point_rate;
@@ -281,10 +292,11 @@ fn instant(
         set_point,
         error: state.error,
         estimate: observes.then_some(Estimate { output: state.estimate, rates: state.rates }),
-        limited: state.limited,
+        limited: state.limited && !diverted,
         at_speed_bound: speed <= limits.speed_min || speed >= limits.speed_max,
         untold: [0.0; 2],
         stands: state.phase != MotionPhase::Law,
+        diverted,
         too_close: state.too_close,
     }
 }

@@ -1,5 +1,6 @@
 //! Which set points followers can hold while their leader drives its path: the set of (distance, bearing) within limits.
 
+use formation::Heading;
 use formation::feasible::{Infeasible, held, infeasible};
 use scene::Scene;
 use simulation::{BuildError, Simulation, build};
@@ -59,7 +60,10 @@ pub fn reach(scene: &Scene) -> Result<Vec<Reach>, BuildError> {
         let own: Vec<MotionInput> = path
             .iter()
             .zip(&times)
-            .map(|(leader, time)| held(place(law.set_point.at(*time).value), leader))
+            .map(|(leader, time)| {
+                let [distance, bearing] = law.set_point.at(*time).value;
+                held(place([distance, bearing - behind(&law.law.heading, leader)]), leader)
+            })
             .collect();
         let value = law.set_point.at(0.0).value;
         let far = (3.0 * value[0]).max(4.0);
@@ -67,7 +71,8 @@ pub fn reach(scene: &Scene) -> Result<Vec<Reach>, BuildError> {
         // A path without what repeats itself.
         let mut distinct = path.clone();
         distinct.dedup();
-        let judge = Judge { path: distinct, limits: *formation.limits(edge.follower), distance_min };
+        let limits = *formation.limits(edge.follower);
+        let judge = Judge { path: distinct, limits, distance_min, heading: law.law.heading };
         let rays = (0..=BEARINGS).map(|k| {
             let bearing = std::f64::consts::TAU * (k as f64 / BEARINGS as f64 - 0.5);
             judge.ray(bearing, far)
@@ -94,16 +99,24 @@ fn place([distance, bearing]: [f64; 2]) -> [f64; 2] {
     [distance * math::cos(bearing), distance * math::sin(bearing)]
 }
 
+/// How far the heading that a bearing is held against is behind a leader's that drives steadily on its circle, rad.
+fn behind(heading: &Heading, leader: &MotionInput) -> f64 {
+    heading.filter().map_or(0.0, |filter| filter.steady(leader.speed, leader.turn_rate))
+}
+
 struct Judge {
     path: Vec<MotionInput>,
     limits: Limits,
     distance_min: f64,
+    heading: Heading,
 }
 
 impl Judge {
     fn against(&self, distance: f64, bearing: f64) -> Option<Infeasible> {
-        let place = place([distance, bearing]);
-        self.path.iter().find_map(|leader| infeasible(place, leader, &self.limits, self.distance_min))
+        self.path.iter().find_map(|leader| {
+            let place = place([distance, bearing - behind(&self.heading, leader)]);
+            infeasible(place, leader, &self.limits, self.distance_min)
+        })
     }
 
     fn ray(&self, bearing: f64, far: f64) -> ReachRay {

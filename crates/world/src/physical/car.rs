@@ -3,13 +3,17 @@
 use super::bodies::Bodies;
 use super::watch::StuckDetector;
 use crate::guide::{chase, stands, waits, wanted_speed};
-use crate::wheeled::driver::{Driver, Effort, Pace, WINDOW};
+use crate::wheeled::driver::{CRAWL, Driver, Effort, Pace, WINDOW};
 use crate::wheeled::tyre::Brush;
 use crate::wheeled::wheel::{Carriage, Footing, Mounting, Pull, Push};
 use crate::{Unicycle, Wheeled};
 use rapier3d_f64::prelude::{RigidBodyHandle, Vector};
 use std::sync::Arc;
 use vocabulary::{Command, Condition, Limits, Motion, Surface, Terrain, Wheel, math};
+
+/// A follower that is slower, m/s, and asked for less acceleration, m/s², is held by its brakes on a slope.
+const STANDS: f64 = 0.02;
+const STARTS: f64 = 0.2;
 
 /// What vehicles drive on and among.
 #[derive(Debug, Clone)]
@@ -40,6 +44,8 @@ pub(super) struct Car {
     waits: bool,
     /// Speed at which it is told to go, m/s.
     told: f64,
+    /// Whether what it stood on in the last physics step may slope: uneven ground, or a prop.
+    uneven: bool,
     mountings: [Mounting; 4],
     pace: Pace,
     command: Command,
@@ -71,6 +77,7 @@ impl Car {
             fate: None,
             waits: false,
             told: slowest,
+            uneven: false,
             mountings: Mounting::of(&vehicle),
             pace: Pace::new(&vehicle, step),
             command: Command::default(),
@@ -109,7 +116,9 @@ impl Car {
             chase(ideal, now, wheelbase, &self.limits)
         } else {
             let Command { acceleration, turn_rate } = self.limits.saturate(command, now.speed);
-            Command { acceleration: self.limits.admissible(acceleration, now.speed), turn_rate }
+            let acceleration = self.limits.admissible(acceleration, now.speed);
+            self.driver.parked = self.holds() && now.speed.abs() < STANDS && acceleration.abs() < STARTS;
+            Command { acceleration, turn_rate }
         };
     }
 
@@ -129,7 +138,13 @@ impl Car {
         let level = Vector::new(ahead.x, ahead.y, 0.0).normalize_or(Vector::X);
         let arm = origin - carriage.centre;
         let speed = (carriage.velocity + carriage.spin.cross(arm)).dot(level);
-        self.driver.slope = if self.waits { ahead.z } else { 0.0 };
+        self.driver.slope = if self.waits {
+            ahead.z
+        } else if self.holds() {
+            (2.0 - speed / CRAWL).clamp(0.0, 1.0) * ahead.z
+        } else {
+            0.0
+        };
         let effort = self.driver.drive(&self.vehicle, &self.pace, self.command, speed, carriage.spin.z);
         self.reactions.clear();
         let air = carriage.velocity * (-self.vehicle.drag * carriage.velocity.length());
@@ -138,11 +153,17 @@ impl Car {
         let climbs = surroundings.props && bodies.props_near(self.body, radius);
         let ride = Ride { carriage, origin, bodies, surroundings, climbs, step: h };
         let headings = headings(&self.vehicle, effort.tan_steering);
+        self.uneven = surroundings.terrain.is_some();
         for (k, heading) in headings.into_iter().enumerate() {
             let pull = Pull { heading, drive: effort.drive[k], brake: effort.brake[k] };
             self.turn_wheel(k, &ride, &pull);
         }
         self.note_steering(&effort, &headings);
+    }
+
+    /// Whether it is a follower that may stand, where it would roll away.
+    fn holds(&self) -> bool {
+        self.uneven && !self.leads && self.limits.speed_min == 0.0
     }
 
     fn turn_wheel(&mut self, k: usize, ride: &Ride<'_>, pull: &Pull) {
@@ -156,7 +177,10 @@ impl Car {
         };
         let prop = ride.climbs.then(|| ride.bodies.prop_under(hub, up, 2.0 * radius, -mounting.droop));
         let (footing, bearer) = match prop.flatten().filter(below) {
-            Some((compression, footing, body)) => (Some((compression, footing)), body),
+            Some((compression, footing, body)) => {
+                self.uneven = true;
+                (Some((compression, footing)), body)
+            }
             None => (ground, None),
         };
         let wheel = &mut self.wheels[k];

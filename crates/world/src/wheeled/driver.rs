@@ -22,7 +22,7 @@ pub struct Driver {
     pub turn: f64,
     /// Whether the brakes hold the vehicle where it stands, at once; the motors of a differential drive hold like brakes.
     pub parked: bool,
-    /// Sine of the slope, nose up, that the driver makes up for: only where it comes to a stand.
+    /// Sine of the slope, nose up, that the driver makes up for: only where it comes to a stand, or stands.
     pub slope: f64,
 }
 
@@ -47,7 +47,7 @@ pub struct Pace {
 }
 
 /// Speed below which steering does not grow steeper, m/s.
-const CRAWL: f64 = 0.1;
+pub const CRAWL: f64 = 0.1;
 /// How far the target may run ahead of the speed, as a share of the largest speed: nothing winds up.
 pub const WINDOW: f64 = 0.1;
 /// A differential drive closes a turn rate error with this time constant, s; at least its lag.

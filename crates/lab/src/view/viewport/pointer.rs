@@ -236,10 +236,7 @@ fn released_at(ui: &Ui) -> Option<Pos2> {
 /// The action of a set point that is dragged to a place.
 fn dragged(frame: &PointerFrame<'_>, edge: usize, place: [f64; 2]) -> Option<Action> {
     let PointerFrame { ui, app_state, record, .. } = frame;
-    let ends = *app_state.fleet()?.edges.get(edge)?;
-    let leader = record.snapshot.robots.get(ends.leader)?.motion.pose;
-    let [dx, dy] = [place[0] - leader.x, place[1] - leader.y];
-    let (distance, bearing) = (math::hypot(dx, dy), wrap(math::atan2(dy, dx) - leader.heading));
+    let [distance, bearing] = app_state.set_point_at(record, edge, place)?;
     let least = app_state.follower(edge).map_or(0.1, |(_, _, follow)| follow.law.distance_min);
     let (free, whole) = ui.input(|input| (input.modifiers.shift, input.modifiers.command));
     let [distance, bearing] = if free {

@@ -8,6 +8,7 @@ use lab::action::Action;
 use lab::app_state::{AppState, Selection};
 use lab::panels::{law, sensing, world};
 use lab::symbols;
+use vocabulary::HeadingReference;
 
 /// The values that are asked for, all of one key.
 fn values(actions: &[Action], key: &str) -> Vec<String> {
@@ -27,7 +28,7 @@ fn tuned(actions: &[Action], key: &str) -> f64 {
 }
 
 /// Every slider of a panel shows its value, can be dragged and set, and goes back; every symbol explains itself.
-fn check_rows(
+pub(super) fn check_rows(
     app_state: impl Fn() -> AppState,
     show: fn(&mut eframe::egui::Ui, &AppState, &mut Vec<Action>),
     rows: &[(symbols::Symbol, &'static str, f64, f64)],
@@ -74,6 +75,38 @@ fn gains_are_shown_tuned_and_explained() {
             (symbols::SLOPE, "law.slope", scene_slope(), 12.0),
         ],
     );
+}
+
+#[test]
+fn headings_and_standing_are_shown_and_tuned() {
+    let text = with(THREE, &[("law.heading", "\"path\""), ("law.standing", "true")]);
+    let rows = [
+        (symbols::HEADING_LENGTH, "law.heading_length", 1.0, 1.5),
+        (symbols::HEADING_LAG, "law.heading_lag", 1.0, 0.5),
+    ];
+    check_rows(|| app_state(&text, 5), law::show, &rows);
+    let mut stands = panel(app_state(&text, 300), law::show);
+    assert_says(&stands, &["left is driven by its law", "° behind its leader's"]);
+    // No longer than twice the length, which the scene would refuse.
+    stands.get_by_role_and_label(Role::Slider, "Heading lag").set_value_accesskit(3.5);
+    assert_eq!(values(&asked(&mut stands), "law.heading_lag"), ["2.0"]);
+    assert_eq!(
+        values(&click(&mut stands, Role::CheckBox, "Stop and stand with the leader"), "law.standing"),
+        ["false"]
+    );
+    // Without a path's heading nobody stands: both at once.
+    click(&mut stands, Role::ComboBox, "Heading");
+    for action in click(&mut stands, Role::Button, "Bearing against the leader's heading") {
+        stands.state_mut().app_state.act(&action);
+    }
+    let state = &stands.state().app_state;
+    let law = state.follower(0).map(|(_, _, follow)| follow.law).expect("a follower");
+    assert!(!law.standing && law.heading == HeadingReference::Leader && state.notice.is_none());
+    assert!(!state.log.iter().any(|line| line.text.contains("restarts")), "{:?}", state.log);
+    stands.run();
+    assert!(stands.query_by_role_and_label(Role::Slider, "Heading lag").is_none());
+    let stand = stands.get_by_role_and_label(Role::CheckBox, "Stop and stand with the leader");
+    assert!(stand.accesskit_node().is_disabled());
 }
 
 fn scene_slope() -> f64 {

@@ -2,6 +2,7 @@
 
 mod gains;
 mod places;
+mod safety;
 mod seeing;
 mod time;
 
@@ -145,13 +146,14 @@ fn every_letter_has_a_face() {
 #[test]
 fn panels_without_a_scene_say_so() {
     let style = rendering::Style::default();
-    let shows: [(&str, Box<Show>); 8] = [
+    let shows: [(&str, Box<Show>); 9] = [
         ("formation", Box::new(lab::panels::formation::show)),
         ("edge", Box::new(lab::panels::edge::show)),
         ("law", Box::new(lab::panels::law::show)),
         ("observer", Box::new(lab::panels::law::observer)),
         ("sensing", Box::new(lab::panels::sensing::show)),
         ("limits", Box::new(lab::panels::world::limits)),
+        ("safety", Box::new(lab::panels::safety::show)),
         ("world", Box::new(lab::panels::world::surroundings)),
         (
             "curves",

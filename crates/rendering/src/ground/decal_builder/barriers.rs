@@ -9,12 +9,12 @@ use vocabulary::{BarrierState, math};
 /// Room at which an arc begins to redden, m for the default body.
 const LOOSE: f64 = 0.8;
 /// Half the angle of an arc, rad, and its points.
-const HALF_ANGLE: f64 = 0.65;
-const POINTS: u32 = 12;
+const HALF_ANGLE: f64 = 0.8;
+const POINTS: u32 = 16;
 /// From the circle around the body to the arc, m for the default body.
-const OFF: f64 = 0.15;
+const OFF: f64 = 0.18;
 /// Half the width of an arc, m for the default body; one that acts is twice as wide.
-const HALF_WIDTH: f64 = 0.025;
+const HALF_WIDTH: f64 = 0.04;
 
 impl DecalBuilder<'_> {
     /// The arcs of every robot that has a filter.
@@ -47,7 +47,7 @@ impl DecalBuilder<'_> {
             let share = 2.0 * f64::from(k) / f64::from(POINTS) - 1.0;
             let (sin, cos) = math::sin_cos(barrier.direction + share * HALF_ANGLE);
             // Its ends fade, so that neighbouring arcs can be told apart.
-            let alpha = (0.25 + 0.7 * tight) * (1.0 - share.abs() as f32).min(0.4) / 0.4;
+            let alpha = (0.5 + 0.5 * tight) * (1.0 - share.abs() as f32).min(0.4) / 0.4;
             (middle + reach * DVec2::new(cos, sin), alpha)
         };
         let points: Vec<_> = (0..=POINTS).map(place).collect();
