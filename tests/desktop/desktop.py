@@ -140,6 +140,8 @@ class Lab:
 
 
 AWAY = (1180, 560)
+# The tab of the panel Safety, and the box in it that switches filters, when the arrangement is the first one.
+SAFETY, FILTER = (1205, 54), (974, 112)
 # As no window manager does it.
 DESTROY = """
 import ctypes, sys
@@ -551,6 +553,28 @@ class Test:
         check(not list(self.data.glob("work-*")), "the work that was thrown away is offered again")
         return "asked first; exit code 0; " + self.judge_film(self.folder / name)
 
+    def keeps_apart(self):
+        """A safety filter is switched off in its panel, and on again by undoing that."""
+        shutil.copy(SCENES / "pillar.toml", self.folder)
+        lab = Lab(self, "pillar.toml", "--paused")
+        lab.still()
+        lab.screen.click(*SAFETY)
+        lab.still()
+        self.see("safety")
+        lab.screen.click(*FILTER)
+        lab.hears(r"^log .*Safety filter of all")
+        text = wait("unsaved work", self.kept, 15)
+        check(tomllib.loads(text)["safety"]["filter"] is False, "the filter is still on")
+        lab.screen.move(*AWAY)
+        lab.still()
+        self.see("safety-off")
+        lab.key("ctrl+z")
+        lab.hears(r"^log .*Undo: Safety filter of all")
+        lab.close()
+        code = lab.ended()
+        check(code == 0, f"exit code {code}: {lab.err.read_text()}")
+        return "off, and on again"
+
     def shows_faults(self):
         (self.folder / "broken.toml").write_text(self.shipped.replace("speed = 1.0", "sped = 1.0", 1))
         lab = Lab(self, "broken.toml", drawn=(244, 42, 960, 600), colours=20)
@@ -648,6 +672,7 @@ def main():
         test.step("Dragging faster than the window draws", test.flicks)
         test.step("Typing faster than the window draws", test.types)
         test.step("Closing in the middle of a film", test.closes_in_a_film)
+        test.step("Switching a safety filter", test.keeps_apart)
         test.step("Opening a broken scene", test.shows_faults)
         test.step("Ctrl C in the terminal", test.is_interrupted)
         test.step("Another program destroys the window", test.is_destroyed)

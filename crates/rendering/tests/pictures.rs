@@ -164,6 +164,39 @@ fn every_element_can_be_switched_off() {
     }
 }
 
+/// What acts and what leaves no command is told at the robot in every view that has names, a conflict even in a crowd.
+#[test]
+fn a_filter_tells_at_its_robot_what_it_does() {
+    for (robots, views) in [(3, &[Viewpoint::Snake, Viewpoint::Top][..]), (100, &[Viewpoint::Snake][..])] {
+        let play = Play::new(robots, Path::Straight);
+        for view in views {
+            let draw = |state: Option<SafetyState>, style: &Style| {
+                let mut renderer = Renderer::new(gpu(), &play.fleet, 800, 600, 1).unwrap();
+                let (trail, mut record) = (play.trail(1.9), play.at(2.0));
+                record.safety.extend(state);
+                renderer
+                    .draw(PictureSpec::new(&trail, &record, &ViewLayout::single(view.clone()), style))
+                    .unwrap()
+            };
+            let state = |moved: f64, acting: &[Constraint], conflict: &[Constraint]| {
+                let (acting, conflict) = (acting.to_vec(), conflict.to_vec());
+                Some(SafetyState { robot: 1, moved, acting, conflict, ..SafetyState::default() })
+            };
+            let style = Style::default();
+            let free = draw(state(0.0, &[], &[]), &style);
+            let held = draw(state(1.0, &[Constraint::Braking, Constraint::Robot(0)], &[]), &style);
+            let sees = draw(state(1.0, &[Constraint::ViewLeft], &[]), &style);
+            let conflict = [Constraint::Robot(0), Constraint::Robot(2), Constraint::LeftTurn];
+            let stuck = draw(state(1.0, &[], &conflict), &style);
+            assert_eq!(free, draw(None, &style));
+            assert_eq!(held != free && sees != free && sees != held, robots < 24);
+            assert!(stuck != free && stuck != held);
+            let without = Style::without(&["barriers"]).unwrap();
+            assert_eq!(draw(state(1.0, &[], &conflict), &without), draw(None, &without));
+        }
+    }
+}
+
 #[test]
 fn a_crowd_is_drawn_without_its_labels() {
     let play = Play::new(100, Path::Straight);

@@ -47,6 +47,10 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     };
     scope(ui, app_state, name, out);
     let kind = vehicle(app_state, robot);
+    let state = app_state.record().and_then(|record| record.edges.get(edge).copied());
+    if let Some(state) = state.filter(|_| follow.law.standing) {
+        ui.label(format!("{name} {}", phase(state.phase)));
+    }
     // In a small window there is more than fits.
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         let (law, default) = (&follow.law, Law::fitting(kind));
@@ -65,14 +69,9 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             ui.data_mut(|data| data.insert_temp(apart_id(), apart_now));
         }
         heading(ui, law, default.heading_length, default.heading_lag, out);
-        if let Some(state) = app_state.record().and_then(|record| record.edges.get(edge).copied())
-            && law.heading == HeadingReference::Path
-        {
+        if let Some(state) = state.filter(|_| law.heading == HeadingReference::Path) {
             let behind = crate::numbers::fixed(state.behind.to_degrees(), 1);
             ui.weak(format!("{name} goes by a heading {behind}° behind its leader's"));
-            if law.standing {
-                ui.label(format!("{name} {}", phase(state.phase)));
-            }
         }
     });
 }

@@ -69,9 +69,9 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
     let body = &fleet.robots[robot].body;
     let reach = math::hypot(body.length, body.width);
     let others = record.pairs(fleet).filter(|(k, other, _)| *k != edge && other.leader == ends.leader);
-    let places = others.filter_map(|(_, _, state)| {
+    let places = others.map(|(_, _, state)| {
         let [distance, bearing] = state.set_point;
-        Some(([distance * math::cos(bearing), distance * math::sin(bearing)], reach))
+        ([distance * math::cos(bearing), distance * math::sin(bearing)], reach)
     });
     let wanted = PlaceConstraints {
         limits: scene.robots.get(robot)?.limits(),

@@ -2,7 +2,7 @@
 
 use formation::Estimate;
 use formation::certificate::{Circumstances, Instant, StatementFinding, Witness, WitnessRow, certify};
-use scene::{Follow, Role, Scene, SensingKind};
+use scene::{Follow, Robot, Role, Scene, SensingKind};
 use simulation::edge_law;
 use vocabulary::{Edge, LawKind, Motion, MotionInput, MotionPhase, SetPoint, StepRecord, TimeMode, wrap};
 
@@ -16,7 +16,8 @@ pub fn so_far(
 ) -> (Vec<StatementFinding>, Vec<WitnessRow>) {
     let witness = witness(records, index, edge, follow);
     let wheels = |robot: usize| scene.robots.get(robot).is_some_and(|robot| robot.vehicle.kind.has_wheels());
-    let leads = scene.robots.get(edge.leader).is_none_or(|robot| matches!(robot.role, Role::Lead { .. }));
+    let smooth = |robot: &Robot| matches!(robot.role, Role::Lead { .. }) && !robot.safety.acts(true);
+    let smooth = scene.robots.get(edge.leader).is_none_or(smooth);
     let held = scene.time.mode != TimeMode::Continuous;
     let first = records.first().map(|record| record.snapshot.time);
     let circumstances = Circumstances {
@@ -24,8 +25,8 @@ pub fn so_far(
         sampled_measurement: scene.time.mode == TimeMode::Measured,
         measures: follow.sensing.kind != SensingKind::Truth,
         wheels: wheels(edge.leader) || wheels(edge.follower),
-        // A leader that follows is told its commands period by period.
-        rough_leader: first.filter(|_| held && !leads),
+        // A leader that follows, or has a filter, is told its commands period by period.
+        rough_leader: first.filter(|_| held && !smooth),
     };
     (certify(&witness, &circumstances), witness.rows().to_vec())
 }
