@@ -134,6 +134,7 @@ mod tests {
         let mut samples = 0;
         while hand_over.advance([9.0, 0.0], [0.0; 2], goal.value, false, 0.01) {
             samples += 1;
+            hand_over.command(Command::default());
             assert!(samples < 3000, "{hand_over:?}");
         }
         let ended = hand_over.set_point(&goal, 0.1).value;

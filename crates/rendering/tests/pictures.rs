@@ -10,7 +10,10 @@ use rendering::{AdapterChoice, Error, Gpu, PictureSpec, Renderer, Style, ViewLay
 use stage::{Path, Play};
 use std::sync::OnceLock;
 use vocabulary::math;
-use vocabulary::{BarrierState, Constraint, Contact, EntityId, Picture, Pose, SafetyState, StepRecord};
+use vocabulary::{
+    BarrierState, Constraint, Contact, EntityId, EventKind, EventRecord, Picture, Pose, SafetyState,
+    StepRecord,
+};
 
 const SIZE: (u32, u32) = (640, 360);
 
@@ -152,6 +155,7 @@ fn every_element_can_be_switched_off() {
         let barrier =
             BarrierState { constraint: Constraint::Robot(0), value: 0.2, slack: 0.0, direction: 1.0 };
         record.safety = vec![SafetyState { robot: 1, barriers: vec![barrier], ..SafetyState::default() }];
+        record.events = vec![EventRecord::done(EventKind::Follow, 1, Some(0))];
         trail.push(&record);
         renderer
             .draw(PictureSpec::new(&trail, &record, &ViewLayout::single(Viewpoint::Snake), style))
