@@ -1,8 +1,10 @@
 //! All edges of a formation together: from what every follower sees to what every robot shall do.
 
+use crate::column::cartesian;
 use crate::graph::Graph;
 use crate::law::{Law, LawInput};
 use crate::memory::EdgeMemory;
+use crate::narrowing::{Narrowing, Outlook};
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use crate::set_point::SetPointTrajectory;
@@ -11,7 +13,7 @@ use crate::tracker::TrackerParameters;
 use std::sync::Arc;
 use vocabulary::{
     Command, Edge, Limits, MotionInput, MotionPhase, Observation, Relative, SetPoint, TrackingState,
-    Trajectory, wrap,
+    Trajectory, math, wrap,
 };
 
 /// Parameters of one edge.
@@ -28,6 +30,8 @@ pub struct EdgeLaw {
     /// Whether it stops with its leader and starts again; it then holds its bearing against a path's heading. Without, it
     /// never drives slower than its least speed.
     pub standing: bool,
+    /// How it files in where its way is not free; it then holds its bearing against a path's heading.
+    pub narrowing: Option<Narrowing>,
 }
 
 /// Parameters of a formation: they do not change as it runs but by [`Formation::apply_parameters`].
@@ -61,6 +65,8 @@ pub struct Decision {
     pub too_close: bool,
     /// What the command is of.
     pub phase: MotionPhase,
+    /// λ: how far the place is on the way from the set point to the column, 0 to 1.
+    pub narrowing: f64,
 }
 
 /// State of a formation: observers, the last decisions, and the memory that some laws need.
@@ -162,9 +168,9 @@ impl Formation {
     fn remember(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
         for (index, (edge, seen)) in self.edges.iter().zip(observations).enumerate() {
             let memory = &mut state.memories[index];
-            // Whoever comes into sight again is met anew.
+            // Whoever comes into sight again is met anew, and where one has filed in one stays.
             if edge.law.heading.filter().is_none() || unseen(seen) {
-                *memory = EdgeMemory::default();
+                *memory = EdgeMemory { narrowing: memory.narrowing, ..EdgeMemory::default() };
                 continue;
             }
             let geometry = Geometry::new(&seen.relative, edge.law.distance_min);
@@ -173,6 +179,12 @@ impl Formation {
                 edge.law.rates(&geometry, seen.own_speed, &leader).into()
             });
             memory.advance(&edge.law, seen, rates, self.period);
+            match &edge.narrowing {
+                Some(rule) => {
+                    memory.narrowing.carry(rule, &edge.set_point.at(time), memory.speed, self.period);
+                }
+                None => memory.narrowing.give_back(self.period),
+            }
             if edge.standing {
                 let turn_rate = state.decisions[index].applied.turn_rate;
                 edge.stand(memory, time, seen, turn_rate, self.period);
@@ -254,7 +266,31 @@ impl Formation {
         if let Some(heading) = memory.heading {
             decision.set_point[1] = wrap(place.value[1] - heading.behind);
         }
-        Decision { rates, too_close, phase, ..decision }
+        let narrowing = parameters.narrowing.as_ref();
+        let narrowing =
+            narrowing.map_or(0.0, |rule| memory.narrowing.share(rule, &parameters.set_point.at(time)));
+        Decision { rates, too_close, phase, narrowing, ..decision }
+    }
+}
+
+impl Formation {
+    /// Followers that narrow look for room; before [`Formation::decide`]. `free` is asked of a follower, a place in the world's
+    /// directions from its pose, m, and a radius, m, whether that circle is free of all that the follower senses.
+    pub fn look(
+        &self,
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        free: &mut dyn FnMut(usize, [f64; 2], f64) -> bool,
+    ) {
+        for (index, (edge, seen)) in self.edges.iter().zip(observations).enumerate() {
+            let memory = &mut state.memories[index];
+            if let (Some(rule), Some(outlook)) = (&edge.narrowing, edge.outlook(memory, time, seen)) {
+                let follower = self.graph.edges()[index].follower;
+                let mut free = |place, radius| free(follower, place, radius);
+                memory.narrowing.look(rule, &outlook, self.period, &mut free);
+            }
+        }
     }
 }
 
@@ -264,8 +300,31 @@ const DIVIDES_BY: f64 = 0.01;
 impl EdgeLaw {
     /// s^d against the heading it is held against.
     fn place(&self, memory: &EdgeMemory, time: f64) -> SetPoint {
-        let base = self.set_point.at(time);
+        let base = self.narrowed(memory, time);
         if self.standing { memory.standing.set_point(&base, self.law.distance_min) } else { base }
+    }
+
+    /// s^d where the follower has filed in, as far as it has.
+    fn narrowed(&self, memory: &EdgeMemory, time: f64) -> SetPoint {
+        memory.narrowing.moves(&self.set_point.at(time), self.law.distance_min)
+    }
+
+    /// Where a follower that narrows looks for room, once it knows how its leader drives.
+    fn outlook(&self, memory: &EdgeMemory, time: f64, seen: &Observation) -> Option<Outlook> {
+        let (filter, heading) = (self.law.heading.filter()?, memory.heading.filter(|_| !unseen(seen))?);
+        // From the leader to the follower.
+        let direction = seen.relative.view_angle + seen.own_heading;
+        let (sin, cos) = math::sin_cos(direction);
+        let distance = seen.relative.distance;
+        Some(Outlook {
+            wide: cartesian(self.set_point.at(time).value),
+            ahead: distance * math::cos(direction - heading.heading),
+            leader: [-distance * cos, -distance * sin],
+            heading: heading.heading + heading.behind,
+            behind: heading.behind,
+            curvature: (heading.curvature + filter.gain() * heading.behind).clamp(-1.0, 1.0),
+            speed: memory.speed,
+        })
     }
 
     /// s^d as the law takes it: with a path's heading, φ^d = ψ^d + θ̄ in place of ψ^d.
@@ -300,7 +359,7 @@ impl EdgeLaw {
     /// Carries the standing rule on over a period; `turn_rate` rad/s is what was applied last.
     fn stand(&self, memory: &mut EdgeMemory, time: f64, seen: &Observation, turn_rate: f64, period: f64) {
         memory.standing.carry(memory.speed, period);
-        let (base, place) = (self.set_point.at(time), self.place(memory, time));
+        let (base, place) = (self.narrowed(memory, time), self.place(memory, time));
         if let Some(input) = self.standing_input(memory, &place, seen) {
             memory.standing.switch(&base, &input, turn_rate, period);
         }
@@ -399,6 +458,7 @@ mod tests {
             tracker: None,
             set_point: SetPointTrajectory::constant(2.0, -2.3),
             standing: false,
+            narrowing: None,
         };
         let limits = Limits::PAPER;
         let lead: Arc<dyn Trajectory> = Arc::new(AnalyticTrajectory::constant(1.0, 0.3));

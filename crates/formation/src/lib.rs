@@ -8,6 +8,7 @@
 //! and [`formation`], which puts them together.
 
 pub mod certificate;
+pub mod column;
 pub mod energy;
 pub mod feasible;
 pub mod formation;
@@ -16,6 +17,7 @@ pub mod law;
 pub mod lead;
 mod matrix_exponential;
 mod memory;
+pub mod narrowing;
 pub mod observer;
 mod offset;
 pub mod path_heading;
@@ -28,6 +30,7 @@ pub use formation::{Decision, EdgeLaw, Formation, FormationState};
 pub use graph::{Graph, GraphError};
 pub use law::{Law, LawInput, Switching};
 pub use memory::EdgeMemory;
+pub use narrowing::Narrowing;
 pub use observer::{Estimate, Observer};
 pub use path_heading::{Heading, PathFilter, PathHeading};
 pub use set_point::SetPointTrajectory;

@@ -1,6 +1,7 @@
 //! What a follower remembers of its leader from sample to sample, where its law needs a memory of its own.
 
 use crate::law::Law;
+use crate::narrowing::NarrowingState;
 use crate::path_heading::PathHeading;
 use crate::relative::Geometry;
 use crate::standing::Standing;
@@ -18,6 +19,8 @@ pub struct EdgeMemory {
     pub heading: Option<PathHeading>,
     /// Whether the follower stands, and where its set point is for that.
     pub standing: Standing,
+    /// How far it has filed in.
+    pub narrowing: NarrowingState,
 }
 
 /// Time constant of the believed speed, s.

@@ -4,6 +4,7 @@
 //! rest the follower holds: it brakes, and its heading stays. When its leader starts, the set point begins where the
 //! follower stands, and goes back to its place once all drive. `docs/moving.md` has the equations.
 
+use crate::column::cartesian;
 use crate::offset::{Offset, OffsetBounds};
 use vocabulary::{Command, MotionPhase, SetPoint, math, wrap};
 
@@ -167,11 +168,6 @@ fn bounded_command(command: Command, speed: f64, [at_rest, growth]: [f64; 2]) ->
         acceleration: number(command.acceleration).clamp(-ACCELERATION_MAX, ACCELERATION_MAX),
         turn_rate: number(command.turn_rate).clamp(-most, most),
     }
-}
-
-fn cartesian([distance, bearing]: [f64; 2]) -> [f64; 2] {
-    let (sin, cos) = math::sin_cos(bearing);
-    [distance * cos, distance * sin]
 }
 
 /// d[x, y]/dt of a set point in its frame.

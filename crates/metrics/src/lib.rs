@@ -15,6 +15,8 @@ pub use contacts::ContactMetrics;
 pub use digest::{Digest, NumberOwner, numbers};
 pub use expectations::JudgedExpectation;
 pub use measurements::{MeasurementMetrics, difference};
-pub use metrics::{EdgeMetrics, Metrics, MetricsBuilder, RobotMetrics, STANDING_AFTER, StandingMetrics};
+pub use metrics::{
+    EdgeMetrics, Metrics, MetricsBuilder, NarrowingMetrics, RobotMetrics, STANDING_AFTER, StandingMetrics,
+};
 pub use safety::SafetyMetrics;
 pub use statistics::{RootMeanSquare, median};

@@ -81,6 +81,7 @@ pub(crate) fn edge(time: f64, [leader, follower]: [&str; 2], edge: &EdgeState, r
     row("limited", Flag(edge.limited));
     row("too_close", Flag(edge.too_close));
     row("phase", Text(edge.phase.word()));
+    row("narrowing", Number(edge.narrowing));
 }
 
 /// A contact that has ended.

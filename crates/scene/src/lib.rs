@@ -19,6 +19,7 @@ mod heights_file;
 mod link;
 mod load;
 mod names;
+mod narrowing;
 mod outline;
 mod overrides;
 mod path_form;
@@ -48,7 +49,8 @@ pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};
 pub use text::node::composed;
 pub use types::{
-    Change, Compensation, Environment, Expect, Film, Follow, Ground, Law, Noise, Observer, OnContact, Patch,
-    Path, Physics, Plot, PropMotion, PropSpec, Proximity, Relief, Robot, Role, Safety, Scene, Sensing,
-    SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Vehicle, VehicleKind, Views, Vision,
+    Change, Compensation, Environment, Expect, Film, Follow, Ground, Law, Narrowing, Noise, Observer,
+    OnContact, Patch, Path, Physics, Plot, PropMotion, PropSpec, Proximity, Relief, Robot, Role, Safety,
+    Scene, Sensing, SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Vehicle, VehicleKind, Views,
+    Vision,
 };

@@ -2,6 +2,7 @@
 
 use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
+use crate::filing::edge_laws;
 use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::safety::SafetyConfig;
 use crate::setup::Setup;
@@ -31,7 +32,8 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let limits = stage.actors.iter().map(|actor| actor.robot.limits).collect();
     let chased = chased(scene, &mut stage);
     let edges = graph.edges().to_vec();
-    let laws = followers.iter().map(|(_, follow)| edge_law(follow)).collect();
+    let laws = edge_laws(&scene.robots, &graph);
+    let changes = scene.changes.iter().map(|change| turn(change, &graph)).collect::<Result<_, _>>()?;
     let member = |robot: &scene::Robot| RobotInfo {
         name: robot.name.clone(),
         leads: matches!(robot.role, Role::Lead { .. }),
@@ -68,17 +70,17 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         stop_at_contact: scene.physics.on_contact != OnContact::Record,
         period: scene.time.period,
         duration: scene.time.duration,
-        changes: scene.changes.iter().map(turn).collect::<Result<_, _>>()?,
+        changes,
     })
 }
 
 /// What `change` puts in place.
-fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
+fn turn(change: &scene::Change, graph: &Graph) -> Result<ScheduledChange, BuildError> {
     let robots = &change.then.robots;
     let followers: Vec<(&str, &Follow)> = change.then.followers().collect();
     check_continuous(&change.then, &followers)?;
     let parameters = ParameterSet {
-        laws: followers.iter().map(|(_, follow)| edge_law(follow)).collect(),
+        laws: edge_laws(robots, graph),
         handling: robots.iter().map(handling).collect(),
         filters: filters(robots),
     };
@@ -129,6 +131,7 @@ pub fn edge_law(follow: &Follow) -> EdgeLaw {
         tracker: tracker_parameters(follow, observer),
         set_point: SetPointTrajectory { distance: follow.distance.clone(), bearing: follow.bearing.clone() },
         standing: law.standing,
+        narrowing: None,
     }
 }
 

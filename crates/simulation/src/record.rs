@@ -51,6 +51,7 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
             limited: decision.limited,
             too_close: decision.too_close,
             phase: decision.phase,
+            narrowing: decision.narrowing,
         };
     }
 }

@@ -35,15 +35,19 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
     // 5. Every law decides on what its follower knows, leaders before followers (eqs 20, 22, 42).
     match &mut run.safety {
         None => run.formation.decide(time, &run.observations, &mut run.state),
-        // What is decided is applied as far as it is safe.
-        Some(safety) => safety.decide(
-            &run.formation,
-            time,
-            &run.observations,
-            &mut run.state,
-            run.plant.world().snapshot(),
-            run.sensing.as_ref(),
-        ),
+        // What is decided is applied as far as it is safe, and places are taken as far as there is room.
+        Some(safety) => {
+            let snapshot = run.plant.world().snapshot();
+            safety.look(&run.formation, time, &run.observations, &mut run.state, snapshot);
+            safety.decide(
+                &run.formation,
+                time,
+                &run.observations,
+                &mut run.state,
+                snapshot,
+                run.sensing.as_ref(),
+            );
+        }
     }
     run.plant.world_mut().apply(&run.state.commands);
     // 6. State and decision are recorded, unless a number in them is not finite.

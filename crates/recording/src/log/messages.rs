@@ -55,7 +55,8 @@ impl Record for EdgeState {
         f.word("sight", &mut self.sight)?;
         f.flag("limited", &mut self.limited)?;
         f.flag("too_close", &mut self.too_close)?;
-        f.word("phase", &mut self.phase)
+        f.word("phase", &mut self.phase)?;
+        f.number("narrowing", &mut self.narrowing)
     }
 }
 
