@@ -133,6 +133,7 @@ impl Case {
             tracker: None,
             set_point: SetPointTrajectory::constant(0.0, 0.0),
             standing: false,
+            narrowing: None,
         })
     }
 

@@ -45,6 +45,9 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
                 for slow in studies::too_slow_leads(&simulation, scene.time.duration) {
                     note(&format!("{name}: note: {slow}"));
                 }
+                for gate in studies::gates(&simulation, scene.time.duration) {
+                    note(&format!("{name}: note: {gate}"));
+                }
                 let (robots, edges) = (fleet.robots.len(), fleet.edges.len());
                 let length = scene.time.duration;
                 let (robots, edges) = (counted(robots, "robot"), counted(edges, "edge"));

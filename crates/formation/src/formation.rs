@@ -1,9 +1,11 @@
 //! All edges of a formation together: from what every follower sees to what every robot shall do.
 
+use crate::column::{cartesian, column};
 use crate::graph::Graph;
 use crate::hand_over::HandOver;
 use crate::law::{Law, LawInput};
 use crate::memory::EdgeMemory;
+use crate::narrowing::{Narrowing, Outlook};
 use crate::observer::{Estimate, Observer};
 use crate::relative::Geometry;
 use crate::set_point::SetPointTrajectory;
@@ -12,7 +14,7 @@ use crate::tracker::TrackerParameters;
 use std::sync::Arc;
 use vocabulary::{
     Command, Edge, Limits, MotionInput, MotionPhase, Observation, Relative, SetPoint, TrackingState,
-    Trajectory, wrap,
+    Trajectory, math, wrap,
 };
 
 /// Parameters of one edge.
@@ -29,6 +31,8 @@ pub struct EdgeLaw {
     /// Whether it stops with its leader and starts again; it then holds its bearing against a path's heading. Without, it
     /// never drives slower than its least speed.
     pub standing: bool,
+    /// How it files in where its way is not free; it then holds its bearing against a path's heading.
+    pub narrowing: Option<Narrowing>,
 }
 
 /// Parameters of a formation: they do not change as it runs but by [`Formation::apply_parameters`].
@@ -69,6 +73,8 @@ pub struct Decision {
     /// How far the place that the follower is driven to is from its set point, m: while it starts again after a stand, or
     /// goes to another place.
     pub displacement: f64,
+    /// λ: how far the place is on the way from the set point to the column, 0 to 1.
+    pub narrowing: f64,
 }
 
 /// State of a formation: observers, the last decisions, and the memory that some laws need.
@@ -99,7 +105,9 @@ impl Formation {
     ) -> Self {
         debug_assert_eq!((edges.len(), limits.len()), (graph.edges().len(), graph.robots()));
         let written = edges.iter().map(|edge| edge.set_point.clone()).collect();
-        Self { graph, edges, written, limits, leads, period }
+        let mut formation = Self { graph, edges, written, limits, leads, period };
+        formation.file();
+        formation
     }
 
     /// Goes on with other laws and limits, as many as before. The set point of an edge that has changed its leader stays,
@@ -115,6 +123,7 @@ impl Formation {
         }
         self.edges = edges;
         self.limits = limits;
+        self.file();
     }
 
     /// Whom the followers of some edges follow from now on and where, or that they follow nobody. Changes nothing and
@@ -130,7 +139,23 @@ impl Formation {
                 self.edges[*edge].set_point.clone_from(set_point);
             }
         }
+        self.file();
         true
+    }
+
+    /// Gives all who narrow their places in the column of the graph as it is.
+    fn file(&mut self) {
+        let filings: Vec<_> = self.edges.iter().map(|edge| edge.narrowing.map(|rule| rule.filing)).collect();
+        if filings.iter().all(Option::is_none) {
+            return;
+        }
+        let places: Vec<_> = self.edges.iter().map(|edge| cartesian(edge.set_point.at(0.0).value)).collect();
+        let columns = column(&self.graph, &places, &filings);
+        for (edge, place) in self.edges.iter_mut().zip(columns) {
+            if let Some(rule) = &mut edge.narrowing {
+                rule.column = place;
+            }
+        }
     }
 
     /// A robot follows nobody from now on and has this motion, or has none of its own any more.
@@ -222,6 +247,12 @@ impl Formation {
             if edge.law.heading.filter().is_some() {
                 let rates = rates();
                 memory.advance(&edge.law, seen, rates, self.period);
+                match &edge.narrowing {
+                    Some(rule) => {
+                        memory.narrowing.carry(rule, &edge.set_point.at(time), memory.speed, self.period);
+                    }
+                    None => memory.narrowing.give_back(self.period),
+                }
             } else if *memory != EdgeMemory::default() {
                 *memory = EdgeMemory { hand_over: memory.hand_over, ..EdgeMemory::default() };
             }
@@ -319,7 +350,32 @@ impl Formation {
             decision.behind = heading.behind;
             decision.set_point[1] = wrap(place.value[1] - heading.behind);
         }
-        Decision { rates, too_close, phase, displacement: memory.displacement(), ..decision }
+        let narrowing = parameters.narrowing.as_ref();
+        let narrowing =
+            narrowing.map_or(0.0, |rule| memory.narrowing.share(rule, &parameters.set_point.at(time)));
+        let displacement = memory.displacement();
+        Decision { rates, too_close, phase, displacement, narrowing, ..decision }
+    }
+}
+
+impl Formation {
+    /// Followers that narrow look for room; before [`Formation::decide`]. `free` is asked of a follower, a place in the world's
+    /// directions from its pose, m, and a radius, m, whether that circle is free of all that the follower senses.
+    pub fn look(
+        &self,
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        free: &mut dyn FnMut(usize, [f64; 2], f64) -> bool,
+    ) {
+        for (index, (edge, seen)) in self.edges.iter().zip(observations).enumerate() {
+            let memory = &mut state.memories[index];
+            if let (Some(rule), Some(outlook)) = (&edge.narrowing, edge.outlook(memory, time, seen)) {
+                let follower = self.graph.edges()[index].follower;
+                let mut free = |place, radius| free(follower, place, radius);
+                memory.narrowing.look(rule, &outlook, self.period, &mut free);
+            }
+        }
     }
 }
 
@@ -327,9 +383,14 @@ impl Formation {
 const DIVIDES_BY: f64 = 0.01;
 
 impl EdgeLaw {
+    /// s^d where the follower has filed in, as far as it has.
+    fn narrowed(&self, memory: &EdgeMemory, time: f64) -> SetPoint {
+        memory.narrowing.moves(&self.set_point.at(time), self.law.distance_min)
+    }
+
     /// s^d against the heading it is held against, as it is while the follower goes to its place.
     fn way(&self, memory: &EdgeMemory, time: f64) -> SetPoint {
-        let base = self.set_point.at(time);
+        let base = self.narrowed(memory, time);
         let hand_over = memory.hand_over.as_ref();
         hand_over.map_or(base, |hand_over| hand_over.set_point(&base, self.law.distance_min))
     }
@@ -358,7 +419,7 @@ impl EdgeLaw {
         [closing, turning]: [f64; 2],
         period: f64,
     ) {
-        let (at, goal) = (self.seen_place(memory, seen), self.set_point.at(time).value);
+        let (at, goal) = (self.seen_place(memory, seen), self.narrowed(memory, time).value);
         let turns = self.law.heading.filter().zip(memory.heading.as_ref());
         let moving =
             [closing, turning - turns.map_or(0.0, |(filter, heading)| heading.rate(filter, memory.speed))];
@@ -367,6 +428,24 @@ impl EdgeLaw {
         if memory.hand_over.as_mut().is_some_and(|hand_over| !goes_on(hand_over)) {
             memory.hand_over = None;
         }
+    }
+
+    /// Where a follower that narrows looks for room, once it knows how its leader drives.
+    fn outlook(&self, memory: &EdgeMemory, time: f64, seen: &Observation) -> Option<Outlook> {
+        let (filter, heading) = (self.law.heading.filter()?, memory.heading.filter(|_| !unseen(seen))?);
+        // From the leader to the follower.
+        let direction = seen.relative.view_angle + seen.own_heading;
+        let (sin, cos) = math::sin_cos(direction);
+        let distance = seen.relative.distance;
+        Some(Outlook {
+            wide: cartesian(self.set_point.at(time).value),
+            ahead: distance * math::cos(direction - heading.heading),
+            leader: [-distance * cos, -distance * sin],
+            heading: heading.heading + heading.behind,
+            behind: heading.behind,
+            curvature: (heading.curvature + filter.gain() * heading.behind).clamp(-1.0, 1.0),
+            speed: memory.speed,
+        })
     }
 
     /// s^d as the law takes it: with a path's heading, φ^d = ψ^d + θ̄ in place of ψ^d.
@@ -507,6 +586,7 @@ mod tests {
             tracker: None,
             set_point: SetPointTrajectory::constant(2.0, -2.3),
             standing: false,
+            narrowing: None,
         };
         let limits = Limits::PAPER;
         let lead: Arc<dyn Trajectory> = Arc::new(AnalyticTrajectory::constant(1.0, 0.3));

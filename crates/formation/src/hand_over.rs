@@ -4,6 +4,7 @@
 //! speeds, and moves to its place at a bounded speed and acceleration. What the law would have asked for in place of the last command is added to it at first, and
 //! fades. `docs/events.md` has figures.
 
+use crate::column::cartesian;
 use crate::offset::{Offset, OffsetBounds};
 use vocabulary::{Command, SetPoint, math};
 
@@ -110,11 +111,6 @@ impl HandOver {
             turn_rate: asked.turn_rate + surplus.turn_rate,
         }
     }
-}
-
-pub(crate) fn cartesian([distance, bearing]: [f64; 2]) -> [f64; 2] {
-    let (sin, cos) = math::sin_cos(bearing);
-    [distance * cos, distance * sin]
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@
 
 pub mod assignment;
 pub mod certificate;
+pub mod column;
 pub mod energy;
 pub mod feasible;
 pub mod formation;
@@ -18,6 +19,7 @@ pub mod law;
 pub mod lead;
 mod matrix_exponential;
 mod memory;
+pub mod narrowing;
 pub mod observer;
 mod offset;
 pub mod path_heading;
@@ -31,6 +33,7 @@ pub use graph::{Graph, GraphError};
 pub use hand_over::{HandOver, HandOverParameters};
 pub use law::{Law, LawInput, Switching};
 pub use memory::EdgeMemory;
+pub use narrowing::Narrowing;
 pub use observer::{Estimate, Observer};
 pub use path_heading::{Heading, PathFilter, PathHeading};
 pub use set_point::SetPointTrajectory;

@@ -2,6 +2,7 @@
 
 use crate::hand_over::HandOver;
 use crate::law::Law;
+use crate::narrowing::NarrowingState;
 use crate::path_heading::PathHeading;
 use crate::relative::Geometry;
 use crate::standing::Standing;
@@ -23,6 +24,8 @@ pub struct EdgeMemory {
     pub hand_over: Option<HandOver>,
     /// How fast a formation turned whose robots change their leaders, rad/s: the path of the new one turns alike at first.
     pub turn_rate: f64,
+    /// How far it has filed in.
+    pub narrowing: NarrowingState,
 }
 
 /// A leader slower than this has no path that turns, m/s.
@@ -37,14 +40,16 @@ impl EdgeMemory {
     pub(crate) fn forget(&mut self) {
         let mut hand_over = self.hand_over;
         hand_over.iter_mut().for_each(HandOver::forget);
-        *self = Self { hand_over, ..Self::default() };
+        // Where one has filed in one stays.
+        *self = Self { hand_over, narrowing: self.narrowing, ..Self::default() };
     }
 
     /// How far the place that the follower is driven to is from its set point, m.
     pub(crate) fn displacement(&self) -> f64 {
         let hand_over = self.hand_over.map_or([0.0; 2], |hand_over| hand_over.offset().value);
-        let standing = self.standing.offset().value;
-        math::hypot(hand_over[0] + standing[0], hand_over[1] + standing[1])
+        let offsets = [hand_over, self.standing.offset().value, self.narrowing.offset().value];
+        let [x, y] = [0, 1].map(|k| offsets.iter().map(|offset| offset[k]).sum::<f64>());
+        math::hypot(x, y)
     }
 
     /// How fast the leader's path turns as it is believed, rad/s.
@@ -56,8 +61,8 @@ impl EdgeMemory {
     /// What is left of it when another robot leads from now on.
     pub(crate) fn change_leader(&mut self, law: &Law, hand_over: HandOver, own_turn_rate: f64) {
         let turn_rate = self.path_turn_rate(law).unwrap_or(own_turn_rate);
-        let standing = self.standing.kept();
-        *self = Self { standing, hand_over: Some(hand_over), turn_rate, ..Self::default() };
+        let (standing, narrowing) = (self.standing.kept(), self.narrowing);
+        *self = Self { standing, narrowing, hand_over: Some(hand_over), turn_rate, ..Self::default() };
     }
 
     /// Takes in a sample `period` s after the last: what is seen of the leader, and the rates of the law's output.

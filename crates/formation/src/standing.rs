@@ -4,7 +4,7 @@
 //! rest the follower holds: it brakes, and its heading stays. When its leader starts, the set point begins where the
 //! follower stands, and goes back to its place once all drive. `docs/moving.md` has the equations.
 
-use crate::hand_over::cartesian;
+use crate::column::cartesian;
 use crate::offset::{Offset, OffsetBounds};
 use vocabulary::{Command, MotionPhase, SetPoint, math, wrap};
 

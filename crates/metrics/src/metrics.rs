@@ -102,6 +102,9 @@ pub struct EdgeMetrics {
     /// How it stood while its leader stood; `None` where that did not stand for long enough.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub standing: Option<StandingMetrics>,
+    /// How far it filed in; `None` where it did not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub narrowing: Option<NarrowingMetrics>,
     /// How well it saw its leader; `None` where it is told the truth.
     pub measurements: Option<MeasurementMetrics>,
     /// Since when the follower has followed nobody, s; `None` where it follows at the end.
@@ -128,6 +131,20 @@ pub struct StandingMetrics {
     /// Farthest from its set point, m.
     pub error: f64,
 }
+
+/// A follower that files in where there is no room.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Default)]
+pub struct NarrowingMetrics {
+    /// Largest share of the way from its set point to the column (λ), 0 to 1.
+    pub largest: f64,
+    /// When it left its set point, s.
+    pub begin: f64,
+    /// From when on it is back at it, s; `None` where it is not at the end.
+    pub end: Option<f64>,
+}
+
+/// A follower is at its set point with less than this of the way to the column.
+const WIDE: f64 = 0.01;
 
 /// A leader at this speed or less stands, m/s.
 const STANDING_SPEED: f64 = 0.01;
@@ -323,6 +340,7 @@ impl EdgeSums {
             self.late_errors.add(edge.error);
         }
         self.measurements.know(edge, step);
+        self.narrow(edge.narrowing, time);
         self.limited += u64::from(edge.limited);
         self.settle(edge, speed, time, judging.settling_band);
         self.last = *edge;
@@ -343,6 +361,21 @@ impl EdgeSums {
         let standing = self.metrics.standing.get_or_insert_default();
         standing.turn_rate = standing.turn_rate.max(follower.turn_rate.abs());
         standing.error = standing.error.max(error);
+    }
+
+    fn narrow(&mut self, share: f64, time: f64) {
+        if share < WIDE {
+            if let Some(found) = &mut self.metrics.narrowing {
+                found.end.get_or_insert(time);
+            }
+            return;
+        }
+        let found = self
+            .metrics
+            .narrowing
+            .get_or_insert(NarrowingMetrics { begin: time, ..NarrowingMetrics::default() });
+        found.largest = found.largest.max(share);
+        found.end = None;
     }
 
     fn settle(&mut self, edge: &EdgeState, speed: f64, time: f64, band: [f64; 2]) {
@@ -422,6 +455,21 @@ mod tests {
         assert!((metrics.clearance_min.expect("two robots") - (1.0 - length)).abs() < 1e-12);
         assert!((metrics.clearance_min_time.expect("a time") - 5.0).abs() < 1e-12);
         assert_eq!(metrics.clearance_min_robots, Some(["a".to_owned(), "b".to_owned()]));
+    }
+
+    #[test]
+    fn a_follower_that_files_in_is_back_from_the_last_sample_on_at_which_it_was_not() {
+        let filed = |shares: &[f64]| {
+            let mut sums = EdgeSums::default();
+            for (k, share) in shares.iter().enumerate() {
+                sums.narrow(*share, k as f64);
+            }
+            sums.metrics.narrowing
+        };
+        assert_eq!(filed(&[0.0, 0.005, 0.0]), None);
+        let found = filed(&[0.0, 0.2, 0.7, 0.0, 0.3, 0.009, 0.0]).expect("it filed in");
+        assert_eq!(found, NarrowingMetrics { largest: 0.7, begin: 1.0, end: Some(5.0) });
+        assert_eq!(filed(&[0.0, 0.2]).expect("it filed in").end, None);
     }
 
     #[test]

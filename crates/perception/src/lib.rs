@@ -7,6 +7,7 @@
 
 pub mod detect;
 pub mod imaging;
+mod outline;
 pub mod pose;
 pub mod proximity;
 pub mod sensors;

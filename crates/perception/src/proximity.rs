@@ -5,6 +5,7 @@
 //! pole at −1/ε estimates their velocities. What stands for good has none. Nothing hides anything.
 
 use crate::imaging::{Purpose, noise_stream};
+use crate::outline::Outline;
 use vocabulary::{EntityId, Mobility, Placement, Prop, RobotInfo, Snapshot, Solid, math};
 
 /// The sensor of one robot.
@@ -39,6 +40,12 @@ pub struct ProximityConfig {
 #[derive(Debug, Clone, Default)]
 pub struct ProximityState {
     taken: u64,
+    /// When the last measurement was, s; `None` before there was one.
+    stamp: Option<f64>,
+    /// Where it was, m.
+    from: [f64; 2],
+    /// Outlines of what it was of, as far as it was asked for them.
+    outlines: Vec<Outline>,
     /// By what they are of.
     tracks: Vec<ProximityTrack>,
     spare: Vec<ProximityTrack>,
@@ -59,6 +66,8 @@ struct ProximityTrack {
     radius: f64,
     /// Whether the sensor is within its outline.
     inside: bool,
+    /// Where it has been since when, s, within [`STAYS`].
+    stays: ([f64; 2], f64),
 }
 
 /// Something that a robot senses.
@@ -90,10 +99,7 @@ impl ProximityConfig {
         out: &mut Vec<Sensed>,
     ) {
         out.clear();
-        let Some(sensor) = &self.sensors[robot] else { return };
-        if snapshot.time + INSTANT >= state.taken as f64 * sensor.interval {
-            self.measure(sensor, state, robot, from, snapshot);
-        }
+        self.take(state, robot, from, snapshot, false);
         for track in &state.tracks {
             let age = snapshot.time - track.stamp;
             let at = [0, 1].map(|k| track.place[k] + age * track.velocity[k]);
@@ -110,6 +116,47 @@ impl ProximityConfig {
                 velocity: track.velocity,
             });
         }
+    }
+
+    /// Takes the measurement of `robot` that is due at `snapshot`, from the place `from`, m; `outlines` asks for more than
+    /// the nearest points, see [`ProximityState::is_free`].
+    pub fn take(
+        &self,
+        state: &mut ProximityState,
+        robot: usize,
+        from: [f64; 2],
+        snapshot: &Snapshot,
+        outlines: bool,
+    ) {
+        let Some(sensor) = &self.sensors[robot] else { return };
+        let due = snapshot.time + INSTANT >= state.taken as f64 * sensor.interval;
+        if due && state.stamp != Some(snapshot.time) {
+            (state.stamp, state.from) = (Some(snapshot.time), from);
+            self.measure(sensor, state, robot, from, snapshot);
+            state.outlines.clear();
+            if outlines {
+                self.outline(state, snapshot);
+            }
+        }
+    }
+
+    /// Notes the outlines of what has been measured.
+    fn outline(&self, state: &mut ProximityState, snapshot: &Snapshot) {
+        let ProximityState { tracks, outlines, from, .. } = state;
+        outlines.extend(tracks.iter().map(|track| match track.thing {
+            EntityId::Prop(index) => {
+                let nearest = gap_to(&self.props[index].solid, &snapshot.props[index], *from, 0.0);
+                let nearest =
+                    nearest.map(|(normal, distance)| [0, 1].map(|k| from[k] - distance * normal[k]));
+                Outline::prop(
+                    track.thing,
+                    &self.props[index].solid,
+                    &snapshot.props[index],
+                    [*from, nearest.unwrap_or(track.measured), track.measured],
+                )
+            }
+            _ => Outline::robot(track.thing, track.measured, track.radius, track.stood(snapshot.time)),
+        }));
     }
 
     fn measure(
@@ -143,10 +190,15 @@ impl ProximityConfig {
                 velocity: [0.0; 2],
                 radius,
                 inside: distance < 0.0,
+                stays: (measured, snapshot.time),
             };
             while let Some(last) = before.next_if(|last| last.thing <= thing) {
                 if last.thing == thing && !stands {
                     track.follow(last, sensor.epsilon);
+                    let (place, _) = last.stays;
+                    if math::hypot(measured[0] - place[0], measured[1] - place[1]) < STAYS {
+                        track.stays = last.stays;
+                    }
                 }
             }
             next.push(track);
@@ -181,7 +233,25 @@ impl ProximityConfig {
     }
 }
 
+/// Who stays within this, m, does not go on.
+const STAYS: f64 = 0.1;
+
+impl ProximityState {
+    /// Whether a circle of `radius` m around `place`, m, is free of what was sensed at the last measurement: the outlines of
+    /// props as far as they are within the sensor's `range`, m, and robots that have stood for a second, but `leader`. What is
+    /// beyond that is not known, and counts as free.
+    pub fn is_free(&self, place: [f64; 2], radius: f64, range: f64, leader: usize) -> bool {
+        let near = |outline: &&Outline| outline.thing != EntityId::Robot(leader);
+        self.outlines.iter().filter(near).all(|outline| outline.leaves(place, radius, self.from, range))
+    }
+}
+
 impl ProximityTrack {
+    /// For how long it has not gone on, s.
+    fn stood(&self, time: f64) -> f64 {
+        time - self.stays.1
+    }
+
     /// Carries the estimate of `last` on to this measurement: exact for a place that moved evenly in between.
     fn follow(&mut self, last: &Self, epsilon: f64) {
         let time = self.stamp - last.stamp;
@@ -294,6 +364,7 @@ mod tests {
             velocity: [0.5, -1.0],
             radius: 0.0,
             inside: false,
+            stays: (place(0.0), 0.0),
         };
         let mut next = ProximityTrack { measured: place(time), stamp: time, ..last };
         next.follow(&last, epsilon);

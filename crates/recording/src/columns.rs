@@ -85,6 +85,7 @@ pub(crate) fn edge(time: f64, [leader, follower]: [&str; 2], edge: &EdgeState, r
     row("too_close", Flag(edge.too_close));
     row("phase", Text(edge.phase.word()));
     row("displacement_m", Number(edge.displacement));
+    row("narrowing", Number(edge.narrowing));
 }
 
 /// A contact that has ended.

@@ -13,8 +13,8 @@ use crate::{
     text::{Flag, Text, angle_within, form::Number, integer, keys, list, number, table},
     types::{
         BearingForm, DistanceForm, EnvironmentPart, ExpectPart, FilmPart, HandOverPart, LawPart,
-        ObserverPart, PhysicsPart, ProximityPart, SafetyPart, SensingForm, SensingPart, TimePart,
-        VehiclePart, ViewsPart, VisionPart,
+        NarrowingPart, ObserverPart, PhysicsPart, ProximityPart, SafetyPart, SensingForm, SensingPart,
+        TimePart, VehiclePart, ViewsPart, VisionPart,
     },
     vehicle::VehicleForm,
 };
@@ -56,6 +56,8 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), part, Live;
         /// What every follower that says nothing else knows of its leader: a kind alone, or a table.
         sensing: SensingPart = SensingForm, part;
+        /// How every follower that says nothing else files in where there is no room.
+        narrowing: NarrowingPart = table::<NarrowingPart>(), part, Live;
         /// Safety filter of every robot that says nothing else.
         safety: SafetyPart = table::<SafetyPart>(), part, Live;
         /// What every robot that says nothing else senses near it.
@@ -114,6 +116,8 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), optional, Live;
         /// What differs from the scene's `sensing`.
         sensing: SensingPart = SensingForm, optional;
+        /// What differs from the scene's `narrowing`.
+        narrowing: NarrowingPart = table::<NarrowingPart>(), optional, Live;
         /// What differs from the scene's `safety`.
         safety: SafetyPart = table::<SafetyPart>(), optional, Live;
         /// What differs from the scene's `proximity`.
@@ -162,6 +166,8 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), part, Live;
         /// What differs from the scene's `sensing`.
         sensing: SensingPart = SensingForm, part;
+        /// What differs from the scene's `narrowing`.
+        narrowing: NarrowingPart = table::<NarrowingPart>(), part, Live;
         /// What differs from the scene's `safety`.
         safety: SafetyPart = table::<SafetyPart>(), part, Live;
         /// What differs from the scene's `proximity`.
@@ -192,6 +198,8 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), optional, Live;
         /// What differs from the group's `sensing`.
         sensing: SensingPart = SensingForm, optional;
+        /// What differs from the group's `narrowing`.
+        narrowing: NarrowingPart = table::<NarrowingPart>(), optional, Live;
         /// What differs from the group's `safety`.
         safety: SafetyPart = table::<SafetyPart>(), optional, Live;
         /// What differs from the group's `proximity`.

@@ -4,10 +4,11 @@ use crate::{
     Event, Failure, HandOver, Happening, Holds, Joining, Path, Place, Recovery, Role, Trigger, When,
     graph::check_known,
     names::NameForm,
+    narrowing::fault,
     path_form::PATH,
     robots::{Defaults, RobotDraft, check_distance, check_path},
     text::{Couple, Found, Node, Reporter, Span, keys, keys::one_of, number, table, words::word},
-    types::{BearingForm, DistanceForm, LawPart, ObserverPart, SensingForm, SensingPart},
+    types::{BearingForm, DistanceForm, LawPart, NarrowingPart, ObserverPart, SensingForm, SensingPart},
 };
 use std::collections::HashMap;
 use vocabulary::{ScalarTrajectory, TimeMode};
@@ -34,6 +35,8 @@ keys! {
         observer: ObserverPart = table::<ObserverPart>(), optional;
         /// What such a robot knows of its leader, where it differs from the scene's `sensing`.
         sensing: SensingPart = SensingForm, optional;
+        /// Whether and how such a robot files in, where it differs from the scene's `narrowing`.
+        narrowing: NarrowingPart = table::<NarrowingPart>(), optional;
         /// Its motion from now on, from where it is then.
         path: Path = PATH, optional;
         /// How it fails.
@@ -200,7 +203,9 @@ impl EventDraft<'_> {
     /// Reports keys that mean nothing for an event of this kind.
     fn check_keys(&self, kind: &str, reporter: &mut Reporter) {
         let fits: &[&str] = match kind {
-            "leader" => &["robot", "leader", "distance", "bearing", "law", "observer", "sensing"],
+            "leader" => {
+                &["robot", "leader", "distance", "bearing", "law", "observer", "sensing", "narrowing"]
+            }
             "path" => &["robot", "path"],
             "fails" => &["robot", "fails", "recovery"],
             _ => &["assign"],
@@ -218,7 +223,7 @@ impl EventDraft<'_> {
             reporter.report(leader.span, format!("`{name}` cannot follow itself"));
             return None;
         }
-        let EventKeys { distance, bearing, law, observer, sensing, .. } = self.keys;
+        let EventKeys { distance, bearing, law, observer, sensing, narrowing, .. } = self.keys;
         let place = match (distance, bearing) {
             (Some(distance), Some(bearing)) => {
                 Some(Place { distance: distance.value.clone(), bearing: bearing.value.clone() })
@@ -242,6 +247,7 @@ impl EventDraft<'_> {
                 ("law", law.as_ref().map(|found| found.span)),
                 ("observer", observer.as_ref().map(|found| found.span)),
                 ("sensing", sensing.as_ref().map(|found| found.span)),
+                ("narrowing", narrowing.as_ref().map(|found| found.span)),
             ];
             for (key, span) in own.into_iter().filter_map(|(key, span)| Some((key, span?))) {
                 let message = format!("`{name}` follows from the start and keeps its `{key}`; give it there");
@@ -255,7 +261,12 @@ impl EventDraft<'_> {
             let sensing = sensing.clone().map_or_else(SensingPart::default, |found| found.value);
             let sensing = self.defaults.sensing(&sensing);
             distance_min = Some(law.distance_min);
-            joins = Some(Box::new(Joining { law, observer, sensing }));
+            let narrowing = narrowing.clone().map_or_else(NarrowingPart::default, |found| found.value);
+            let narrowing = self.defaults.narrowing(&narrowing);
+            if let Some(message) = fault(robot, &narrowing, &law) {
+                reporter.report(self.node.span, message);
+            }
+            joins = Some(Box::new(Joining { law, observer, sensing, narrowing }));
         }
         if let (Some(least), Some(found)) = (distance_min, distance) {
             check_distance(found.value.range()[0], least, found.span, reporter);

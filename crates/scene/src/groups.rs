@@ -1,7 +1,7 @@
 //! Groups become robots.
 
 use crate::{
-    Follow, Law, Observer, Proximity, Robot, Role, Safety, Sensing, Vehicle,
+    Follow, Law, Narrowing, Observer, Proximity, Robot, Role, Safety, Sensing, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS, MemberKeys},
     graph::{Named, check_known},
     random::RandomStream,
@@ -80,7 +80,7 @@ pub(crate) fn expand(
         if let Some(found) = member.and_then(|keys| keys.distance.as_ref()) {
             check_distance(distance.range()[0], own.law.distance_min, found.span, reporter);
         }
-        let Outfit { vehicle, law, observer, sensing, safety, proximity } = own;
+        let Outfit { vehicle, law, observer, sensing, narrowing, safety, proximity } = own;
         let name = group.name(place);
         let told = member.and_then(|keys| keys.leader.clone());
         if told.is_none() {
@@ -88,7 +88,7 @@ pub(crate) fn expand(
         }
         let usual = || if spot.follows == 0 { leader.clone() } else { group.name(spot.follows) };
         let followed = told.as_ref().map_or_else(usual, |told| told.value.clone());
-        let follow = Follow { leader: followed, speed, distance, bearing, law, observer, sensing };
+        let follow = Follow { leader: followed, speed, distance, bearing, law, observer, sensing, narrowing };
         let role = Role::Follow(Box::new(follow));
         let robot = Robot { name, pose, number: 0, vehicle, safety, proximity, role };
         group.push(place, robot, told, drafts);
@@ -147,6 +147,7 @@ struct Outfit {
     law: Law,
     observer: Observer,
     sensing: Sensing,
+    narrowing: Narrowing,
     safety: Safety,
     proximity: Proximity,
 }
@@ -229,6 +230,7 @@ impl Group<'_> {
         let law = over(own.law.as_ref(), keys.law.as_ref()?);
         let observer = over(own.observer.as_ref(), keys.observer.as_ref()?);
         let sensing = over(own.sensing.as_ref(), keys.sensing.as_ref()?);
+        let narrowing = over(own.narrowing.as_ref(), keys.narrowing.as_ref()?);
         let safety = over(own.safety.as_ref(), keys.safety.as_ref()?);
         let proximity = over(own.proximity.as_ref(), keys.proximity.as_ref()?);
         Some(Outfit {
@@ -236,6 +238,7 @@ impl Group<'_> {
             law: defaults.law(&law, vehicle.kind, self.node.span, reporter),
             observer: defaults.observer(&observer, &vehicle),
             sensing: defaults.sensing(&sensing),
+            narrowing: defaults.narrowing(&narrowing),
             safety: defaults.safety(&safety),
             proximity: defaults.proximity(&proximity),
         })

@@ -20,6 +20,7 @@ mod heights_file;
 mod link;
 mod load;
 mod names;
+mod narrowing;
 mod outline;
 mod overrides;
 mod path_form;
@@ -50,7 +51,7 @@ pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};
 pub use text::node::composed;
 pub use types::{
     Change, Compensation, Environment, Event, Expect, Failure, Film, Follow, Ground, HandOver, Happening,
-    Holds, Joining, Law, Noise, Observer, OnContact, Patch, Path, Physics, Place, Plot, PropMotion, PropSpec,
-    Proximity, Recovery, Relief, Robot, Role, Safety, Scene, Sensing, SensingKind, Shot, SpeedProfile,
-    SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views, Vision, When,
+    Holds, Joining, Law, Narrowing, Noise, Observer, OnContact, Patch, Path, Physics, Place, Plot,
+    PropMotion, PropSpec, Proximity, Recovery, Relief, Robot, Role, Safety, Scene, Sensing, SensingKind,
+    Shot, SpeedProfile, SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views, Vision, When,
 };

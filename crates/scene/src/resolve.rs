@@ -7,6 +7,7 @@ use crate::{
     graph::{Named, check_graph, check_known},
     ground::ground,
     groups::{Group, expand},
+    narrowing::check_narrowing,
     props::{Placed, PropStage},
     robots::{Defaults, RobotDraft, draft},
     safety::check_safety,
@@ -49,6 +50,7 @@ pub(crate) fn resolve(document: Document, root: &Node, reporter: &mut Reporter) 
     let vision = vision_part.complete(&VisionPart::default());
     check_sight(&Said { time: &time_part, part: &vision_part, vision: &vision }, &drafts, reporter);
     check_safety(&time_part, &drafts, reporter);
+    check_narrowing(&drafts, reporter);
     let level = ground.as_ref().is_none_or(|ground| ground.terrain.is_none());
     check_continuous(&time_part, &drafts, &props, level, reporter);
     if let Some(ground) = &ground
@@ -97,6 +99,7 @@ fn defaults(document: &Document, root: &Node, reporter: &mut Reporter) -> Option
         law: document.law.as_ref()?.value.clone(),
         observer: document.observer.as_ref()?.value.clone(),
         sensing: document.sensing.as_ref()?.value.clone(),
+        narrowing: document.narrowing.as_ref()?.value.clone(),
         safety: document.safety.as_ref()?.value.clone(),
         proximity: document.proximity.as_ref()?.value.clone(),
         step: physics.complete(&PhysicsPart::default()).step,
@@ -119,6 +122,7 @@ pub(crate) fn resolve_robots(
     let vision = part.complete(&VisionPart::default());
     check_sight(&Said { time, part, vision: &vision }, &drafts, reporter);
     check_safety(time, &drafts, reporter);
+    check_narrowing(&drafts, reporter);
     drafts.into_iter().map(|draft| draft.robot).collect()
 }
 

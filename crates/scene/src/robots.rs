@@ -1,11 +1,11 @@
 //! From the keys of a robot to a checked robot.
 
 use crate::{
-    Follow, Law, Observer, Path, Proximity, Robot, Role, Safety, Sensing, Vehicle, VehicleKind,
+    Follow, Law, Narrowing, Observer, Path, Proximity, Robot, Role, Safety, Sensing, Vehicle, VehicleKind,
     document::RobotKeys,
     graph::Named,
     text::{Found, Keys, Node, Part, Reporter, Span},
-    types::{LawPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart},
+    types::{LawPart, NarrowingPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart},
     vehicle::{WrittenVehicle, kind_is_lost, vehicle},
 };
 use vocabulary::{HeadingReference, Pose, math};
@@ -16,6 +16,7 @@ pub(crate) struct Defaults {
     pub(crate) law: LawPart,
     pub(crate) observer: ObserverPart,
     pub(crate) sensing: SensingPart,
+    pub(crate) narrowing: NarrowingPart,
     pub(crate) safety: SafetyPart,
     pub(crate) proximity: ProximityPart,
     /// Step of the physics, s.
@@ -72,6 +73,11 @@ impl Defaults {
     /// The sensing of a robot or group that says `own` of it.
     pub(crate) fn sensing(&self, own: &SensingPart) -> Sensing {
         own.complete_with(&self.sensing, Sensing::default())
+    }
+
+    /// How a robot or group that says `own` of it files in.
+    pub(crate) fn narrowing(&self, own: &NarrowingPart) -> Narrowing {
+        own.complete_with(&self.narrowing, Narrowing::default())
     }
 
     /// The safety filter of a robot or group that says `own` of it.
@@ -164,7 +170,7 @@ fn role(
 
 fn lead(keys: &RobotKeys, node: &Node, vehicle: &Vehicle, reporter: &mut Reporter) -> Option<Role> {
     let name = &keys.name.as_ref()?.value;
-    for entry in ["distance", "bearing", "speed", "law", "observer", "sensing"]
+    for entry in ["distance", "bearing", "speed", "law", "observer", "sensing", "narrowing"]
         .into_iter()
         .filter_map(|key| node.entry(key))
     {
@@ -194,6 +200,7 @@ fn follow(
     let law = defaults.law(&law, vehicle.kind, node.span, reporter);
     let observer = keys.observer.clone().map_or_else(ObserverPart::default, |found| found.value);
     let sensing = keys.sensing.clone().map_or_else(SensingPart::default, |found| found.value);
+    let narrowing = keys.narrowing.clone().map_or_else(NarrowingPart::default, |found| found.value);
     let speed = start_speed(keys.speed.as_ref(), vehicle, law.standing, reporter);
     let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
     check_distance(distance.value.range()[0], law.distance_min, distance.span, reporter);
@@ -205,6 +212,7 @@ fn follow(
         law,
         observer: defaults.observer(&observer, vehicle),
         sensing: defaults.sensing(&sensing),
+        narrowing: defaults.narrowing(&narrowing),
     })
 }
 

@@ -1,7 +1,9 @@
 //! What leads from one scene to another while a run goes, and what stands in the way.
 
 use crate::text::{Keys, keys::Mark};
-use crate::types::{LawPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart};
+use crate::types::{
+    LawPart, NarrowingPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart,
+};
 use crate::vehicle::applies;
 use crate::{Follow, Robot, Role, Scene};
 use serde::Serialize;
@@ -20,7 +22,7 @@ pub(crate) struct ParameterDifference {
 pub(crate) fn refusal(path: &str) -> String {
     format!(
         "`{path}` cannot change while a run goes; what can is `distance`, `bearing`, `law`, `observer` without its `start`, \
-         the limits of a `vehicle`, and `safety` of a follower"
+         `narrowing`, the limits of a `vehicle`, and `safety` of a follower"
     )
 }
 
@@ -112,6 +114,7 @@ impl ParameterDifference {
         }
         self.note_table([&a.law, &b.law], &format!("{at}law."), is_live::<LawPart>);
         self.note_table([&a.observer, &b.observer], &format!("{at}observer."), is_live::<ObserverPart>);
+        self.note_table([&a.narrowing, &b.narrowing], &format!("{at}narrowing."), is_live::<NarrowingPart>);
         self.note_table([&a.sensing, &b.sensing], &format!("{at}sensing."), is_live::<SensingPart>);
     }
 

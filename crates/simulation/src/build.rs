@@ -3,6 +3,7 @@
 use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
 use crate::events::event_plan;
+use crate::filing::edge_laws;
 use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::safety::SafetyConfig;
 use crate::setup::Setup;
@@ -41,7 +42,8 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let limits = stage.actors.iter().map(|actor| actor.robot.limits).collect();
     let chased = chased(scene, &mut stage);
     let edges = graph.edges().to_vec();
-    let laws = followers.iter().map(|(_, follow)| edge_law(follow)).collect();
+    let laws = edge_laws(scene);
+    let changes = scene.changes.iter().map(turn).collect::<Result<_, _>>()?;
     let member = |robot: &scene::Robot| RobotInfo {
         name: robot.name.clone(),
         leads: matches!(robot.role, Role::Lead { .. }),
@@ -81,7 +83,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         stop_at_contact: scene.physics.on_contact != OnContact::Record,
         period: scene.time.period,
         duration: scene.time.duration,
-        changes: scene.changes.iter().map(turn).collect::<Result<_, _>>()?,
+        changes,
     })
 }
 
@@ -93,7 +95,7 @@ fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
     let followers: Vec<(&str, &Follow)> = change.then.followers().chain(later).collect();
     check_continuous(&change.then, &followers)?;
     let parameters = ParameterSet {
-        laws: followers.iter().map(|(_, follow)| edge_law(follow)).collect(),
+        laws: edge_laws(&change.then),
         handling: change.then.robots.iter().map(|robot| handling(&change.then, robot)).collect(),
         filters: filters(robots),
     };
@@ -144,6 +146,7 @@ pub fn edge_law(follow: &Follow) -> EdgeLaw {
         tracker: tracker_parameters(follow, observer),
         set_point: SetPointTrajectory { distance: follow.distance.clone(), bearing: follow.bearing.clone() },
         standing: law.standing,
+        narrowing: None,
     }
 }
 

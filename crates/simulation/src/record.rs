@@ -61,6 +61,7 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
             too_close: decision.too_close,
             phase: decision.phase,
             displacement: decision.displacement,
+            narrowing: decision.narrowing,
         };
         if !graph.is_in_force(index) {
             *out = not_in_force(out);

@@ -1,12 +1,14 @@
 //! Safety filters in the loop: what robots sense near them, the barriers of that, and the commands that these leave.
 
 use crate::sensing::SensingPipeline;
-use formation::Formation;
+use formation::{EdgeLaw, Formation, FormationState};
 use perception::proximity::{ProximityConfig, ProximityState, Sensed};
 use safety::{Filter, HalfPlane, Neighbour, Parameters, Placed, Sight, Wish, barrier};
 use std::f64::consts::PI;
 use std::sync::Arc;
-use vocabulary::{Command, Constraint, EntityId, Limits, Motion, Observation, SafetyState, Snapshot, wrap};
+use vocabulary::{
+    Body, Command, Constraint, EntityId, Limits, Motion, Observation, SafetyState, Snapshot, wrap,
+};
 
 /// What safety filters go by, beside their barriers.
 #[derive(Debug, Clone)]
@@ -65,6 +67,42 @@ impl SafetyPipeline {
         &self.states[..self.count]
     }
 
+    /// How far a robot senses, m.
+    pub(crate) fn range(&self, robot: usize) -> Option<f64> {
+        self.config.proximity.sensors[robot].map(|sensor| sensor.range)
+    }
+
+    /// Followers that narrow look for room in what they sense. Where a robot has a filter, it senses from the filter's point.
+    pub(crate) fn look(
+        &mut self,
+        formation: &Formation,
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        snapshot: &Snapshot,
+    ) {
+        let graph = formation.graph();
+        let narrows = |(index, law): (usize, &EdgeLaw)| {
+            (law.narrowing.is_some() && graph.is_in_force(index)).then(|| graph.edges()[index].follower)
+        };
+        for robot in formation.laws().iter().enumerate().filter_map(narrows) {
+            let motion = &snapshot.robots[robot].motion;
+            let own = placed(motion, &self.config.proximity.robots[robot].body);
+            let middle = own.pose.world_from_body(own.middle, 0.0);
+            let from = self.filters[robot].map_or(middle, |parameters| own.point_ahead(&parameters));
+            self.config.proximity.take(&mut self.sensors[robot], robot, from, snapshot, true);
+        }
+        formation.look(time, observations, state, &mut |robot, [x, y], radius| {
+            let pose = &snapshot.robots[robot].motion.pose;
+            let place = [pose.x + x, pose.y + y];
+            let range = self.range(robot).unwrap_or(0.0);
+            let leader = graph.leader_of(robot).unwrap_or(robot);
+            let arena = self.filters[robot].and_then(|parameters| parameters.arena);
+            arena.is_none_or(|arena| within(arena, place, radius))
+                && self.sensors[robot].is_free(place, radius, range, leader)
+        });
+    }
+
     /// A control sample begins.
     pub(crate) fn begin(&mut self) {
         self.count = 0;
@@ -112,12 +150,7 @@ impl SafetyPipeline {
         let Workspace { near, collisions, views, .. } = workspace;
         let motion = &snapshot.robots[robot].motion;
         let body = &config.proximity.robots[robot].body;
-        let own = Placed {
-            pose: motion.pose,
-            speed: motion.speed,
-            middle: 0.5 * body.wheelbase,
-            radius: body.radius(),
-        };
+        let own = placed(motion, body);
         let from = own.point_ahead(parameters);
         config.proximity.sense(&mut sensors[robot], robot, from, snapshot, near);
         collisions.clear();
@@ -184,6 +217,16 @@ impl SafetyPipeline {
         let [least, most] = [to(limits.speed_min), to(limits.speed_max)];
         [least.min(most), most]
     }
+}
+
+/// A robot as its barriers take it.
+fn placed(motion: &Motion, body: &Body) -> Placed {
+    Placed { pose: motion.pose, speed: motion.speed, middle: 0.5 * body.wheelbase, radius: body.radius() }
+}
+
+/// Whether a circle is within [x from, y from, x to, y to], m.
+fn within([x0, y0, x1, y1]: [f64; 4], [x, y]: [f64; 2], radius: f64) -> bool {
+    (x0 + radius..=x1 - radius).contains(&x) && (y0 + radius..=y1 - radius).contains(&y)
 }
 
 /// m/s.

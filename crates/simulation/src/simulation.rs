@@ -213,6 +213,19 @@ impl Simulation {
         }
     }
 
+    /// How far beside the middle of a robot nothing else may be, m: the circle around its body, and what its filter keeps free
+    /// beside that, which it does of the point ahead.
+    pub(crate) fn room_beside(&self, robot: usize) -> f64 {
+        let filter = self.safety.as_ref().and_then(|safety| safety.filters[robot]);
+        self.fleet.robots[robot].body.radius()
+            + filter.map_or(0.0, |filter| filter.margin + filter.point_ahead)
+    }
+
+    /// How far a robot senses what is near it, m; `None` where it does not.
+    pub(crate) fn senses(&self, robot: usize) -> Option<f64> {
+        self.safety.as_ref()?.range(robot)
+    }
+
     /// Number of the next control sample, from 0; its time is this times the period.
     pub fn sample(&self) -> u64 {
         self.sample

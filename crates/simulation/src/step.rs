@@ -35,8 +35,8 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
         run.fault = Some(Fault::CameraRenderer(fault));
         return false;
     }
-    // 6. Every law decides on what its follower knows, leaders before followers (eqs 20, 22, 42). What is decided is
-    //    applied as far as it is safe.
+    // 6. Every law decides on what its follower knows, leaders before followers (eqs 20, 22, 42). Places are taken as far as
+    //    there is room, and what is decided is applied as far as it is safe.
     decide(run, time);
     run.plant.world_mut().apply(&run.state.commands);
     // 7. State and decision are recorded, unless a number in them is not finite.
@@ -62,6 +62,7 @@ fn decide(run: &mut Simulation, time: f64) {
     let (snapshot, sensing) = (plant.world().snapshot(), sensing.as_ref());
     if let Some(safety) = safety {
         safety.begin();
+        safety.look(formation, time, observations, state, snapshot);
     }
     formation.decide_through(time, observations, state, &mut |robot, decided| {
         let limits = formation.limits(robot);

@@ -73,6 +73,9 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Judg
     if let Some(most) = expect.standing_error_at_most {
         findings.standing("standing_error_at_most", most, "m", |found| found.error);
     }
+    if let Some(latest) = expect.wide_again_by {
+        findings.wide_again(latest);
+    }
     if let Some(least) = expect.in_view_at_least {
         findings.in_view(least);
     }
@@ -255,6 +258,23 @@ impl<'a> ExpectationJudge<'a> {
         self.add(key, format!("≤ {} {unit}", short(most)), found, met);
     }
 
+    fn wide_again(&mut self, latest: f64) {
+        let (key, wanted) = ("wide_again_by", format!("≤ {latest} s"));
+        let edges = self.metrics.edges.iter();
+        let filed: Vec<_> = edges.filter_map(|edge| Some((edge, edge.narrowing.as_ref()?))).collect();
+        let away = filed.iter().find(|(_, found)| found.end.is_none());
+        if away.is_some() && self.metrics.duration < latest {
+            return self.add_unjudged(key, wanted, latest);
+        }
+        let ends = filed.iter().filter_map(|(edge, found)| Some((edge, found.end?)));
+        let (found, met) = match (away, ends.max_by(|a, b| a.1.total_cmp(&b.1))) {
+            (Some((edge, _)), _) => (format!("{} is not at its set point", name(edge)), false),
+            (None, Some((edge, end))) => (format!("{end:.2} s on {}", name(edge)), end <= latest),
+            (None, None) => ("nobody files in".into(), false),
+        };
+        self.add(key, wanted, found, met);
+    }
+
     fn in_view(&mut self, least: f64) {
         let measured = self.followed().filter_map(|edge| Some((edge, edge.measurements.as_ref()?.in_view)));
         let percent = |share: f64| format!("{:.2} %", share * 100.0);
@@ -307,7 +327,7 @@ fn name(edge: &EdgeMetrics) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use metrics::RobotMetrics;
+    use metrics::{NarrowingMetrics, RobotMetrics};
 
     fn metrics() -> Metrics {
         let edge = EdgeMetrics {
@@ -344,6 +364,30 @@ mod tests {
 
     fn met(expect: &Expect, metrics: &Metrics, key: &str) -> Vec<bool> {
         expectations(expect, metrics, true).iter().filter(|f| f.key == key).filter_map(|f| f.met).collect()
+    }
+
+    #[test]
+    fn followers_are_back_in_time_or_not_and_someone_has_to_have_filed_in() {
+        let expect = Expect { wide_again_by: Some(10.0), ..Expect::default() };
+        let with = |duration: f64, end: Option<Option<f64>>| {
+            let mut metrics = Metrics { duration, ..metrics() };
+            metrics.edges[0].narrowing = end.map(|end| NarrowingMetrics { largest: 1.0, begin: 2.0, end });
+            expectations(&expect, &metrics, true)
+                .into_iter()
+                .find(|f| f.key == "wide_again_by")
+                .expect("judged")
+        };
+        for (end, met, words) in [
+            (Some(Some(9.0)), true, "9.00 s on `ann` → `bob`"),
+            (Some(Some(11.0)), false, "11.00 s"),
+            (Some(None), false, "is not at its set point"),
+            (None, false, "nobody files in"),
+        ] {
+            let found = with(15.0, end);
+            assert_eq!(found.met, Some(met), "{found:?}");
+            assert!(found.found.contains(words), "{found:?}");
+        }
+        assert_eq!(with(9.0, Some(None)).met, None);
     }
 
     #[test]

@@ -41,6 +41,8 @@ pub struct EdgeState {
     pub phase: MotionPhase,
     /// How far that place is from its set point, m: while it starts again after a stand, or goes to another place.
     pub displacement: f64,
+    /// How far the follower has filed in, 0 at its set point to 1 in the column (λ); `set_point` is its place as it has.
+    pub narrowing: f64,
 }
 
 /// Snapshot and edges of one instant.
@@ -103,6 +105,7 @@ impl StepRecord {
             o.relative.bearing = turn(o.relative.bearing, n.relative.bearing);
             o.relative.view_angle = turn(o.relative.view_angle, n.relative.view_angle);
             o.set_point = [mix(o.set_point[0], n.set_point[0]), turn(o.set_point[1], n.set_point[1])];
+            o.narrowing = mix(o.narrowing, n.narrowing);
             o.error = [mix(o.error[0], n.error[0]), turn(o.error[1], n.error[1])];
         }
         out

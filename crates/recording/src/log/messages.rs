@@ -57,7 +57,8 @@ impl Record for EdgeState {
         f.flag("limited", &mut self.limited)?;
         f.flag("too_close", &mut self.too_close)?;
         f.word("phase", &mut self.phase)?;
-        f.number("displacement_m", &mut self.displacement)
+        f.number("displacement_m", &mut self.displacement)?;
+        f.number("narrowing", &mut self.narrowing)
     }
 }
 

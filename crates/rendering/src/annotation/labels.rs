@@ -325,7 +325,10 @@ fn edges(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Wind
         let (Some(a), Some(b)) = (place(edge.leader), place(edge.follower)) else { continue };
         let degrees = state.relative.bearing.to_degrees().round();
         let sign = if degrees < 0.0 { "\u{2212}" } else { "" };
-        let text = format!("{:.2} m  {sign}{:.0}°", state.relative.distance, degrees.abs());
+        let place = format!("{:.2} m  {sign}{:.0}°", state.relative.distance, degrees.abs());
+        // How far it has filed in.
+        let filed = state.narrowing > 0.005;
+        let text = if filed { format!("{place}  λ {:.2}", state.narrowing) } else { place };
         // Beside the middle, on the side away from the formation first.
         let across = (b - a).perp().normalize_or(Vec2::Y);
         let outward = if across.y < 0.0 { across } else { -across };

@@ -1,6 +1,6 @@
 //! What happens to the formation while a run goes: robots change their leader, fail, join and part.
 
-use super::{Law, Observer, Path, Sensing};
+use super::{Law, Narrowing, Observer, Path, Sensing};
 use crate::text::{Couple, angle_within, number, settings};
 use serde::Serialize;
 use std::f64::consts::PI;
@@ -130,6 +130,9 @@ pub struct Joining {
     pub observer: Observer,
     /// What it knows of its leader.
     pub sensing: Sensing,
+    /// Whether and how it files in where there is no room.
+    #[serde(skip_serializing_if = "Narrowing::is_usual")]
+    pub narrowing: Narrowing,
 }
 
 words! {

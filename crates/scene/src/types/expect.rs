@@ -52,6 +52,9 @@ settings! {
         pub standing_turn_rate_at_most: Option<f64> = None, Optional(number("rad/s").from(0.0));
         /// How far from its set point any follower may be whose leader has stood for 2 s, m.
         pub standing_error_at_most: Option<f64> = None, Optional(LENGTH);
+        /// Time from which on every follower is back at its set point that filed in where there was no room, s; one at least
+        /// has to have filed in.
+        pub wide_again_by: Option<f64> = None, Optional(number("s").from(0.0));
         /// Share of the measurements that arrived in which every follower has to have recognised its leader.
         pub in_view_at_least: Option<f64> = None, Optional(number("").from(0.0).up_to(1.0));
         /// Time from which `settled_error_at_most` and `settled_rms_at_most` hold, s.

@@ -9,6 +9,7 @@ mod expect;
 mod film;
 mod ground;
 mod law;
+mod narrowing;
 mod path;
 mod prop;
 mod robot;
@@ -25,6 +26,7 @@ pub use expect::Expect;
 pub use film::{Film, Plot, Shot};
 pub use ground::{Ground, Noise, Patch, Relief};
 pub use law::{Law, Observer, SwitchingKind};
+pub use narrowing::Narrowing;
 pub use path::{Path, SpeedProfile};
 pub use prop::{PropMotion, PropSpec};
 pub use robot::{Follow, Robot, Role};
@@ -38,6 +40,7 @@ pub(crate) use event::HandOverPart;
 pub(crate) use expect::ExpectPart;
 pub(crate) use film::FilmPart;
 pub(crate) use law::{LawPart, ObserverPart};
+pub(crate) use narrowing::NarrowingPart;
 pub(crate) use run::{PhysicsPart, TimePart};
 pub(crate) use safety::{ProximityPart, SafetyPart};
 pub(crate) use sensing::{SensingForm, SensingPart, VisionPart};
@@ -157,9 +160,17 @@ impl Scene {
                 || [fixed(joins.law.distance_min), fixed(std::f64::consts::PI)],
                 |place| [place.distance.clone(), place.bearing.clone()],
             );
-            let Joining { law, observer, sensing } = (**joins).clone();
-            let follow =
-                Follow { leader: leader.clone(), speed: 0.0, distance, bearing, law, observer, sensing };
+            let Joining { law, observer, sensing, narrowing } = (**joins).clone();
+            let follow = Follow {
+                leader: leader.clone(),
+                speed: 0.0,
+                distance,
+                bearing,
+                law,
+                observer,
+                sensing,
+                narrowing,
+            };
             joining.push((robot, follow));
         }
         joining

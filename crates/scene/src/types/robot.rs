@@ -1,6 +1,6 @@
 //! Robots and their roles.
 
-use super::{Law, Observer, Path, Proximity, Safety, Sensing, Vehicle};
+use super::{Law, Narrowing, Observer, Path, Proximity, Safety, Sensing, Vehicle};
 use crate::vehicle::written;
 use serde::{Serialize, Serializer};
 use vocabulary::{Limits, Pose, ScalarTrajectory};
@@ -78,6 +78,9 @@ pub struct Follow {
     pub observer: Observer,
     /// What it knows of its leader.
     pub sensing: Sensing,
+    /// Whether and how it files in where there is no room.
+    #[serde(skip_serializing_if = "Narrowing::is_usual")]
+    pub narrowing: Narrowing,
 }
 
 pub(super) fn pose_as_list<S: Serializer>(pose: &Pose, serializer: S) -> Result<S::Ok, S::Error> {

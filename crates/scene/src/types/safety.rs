@@ -50,7 +50,7 @@ settings! {
 }
 
 /// Length of the body that margins and points ahead were found for, m.
-const BODY_LENGTH: f64 = 0.42;
+pub(super) const BODY_LENGTH: f64 = 0.42;
 
 impl Safety {
     /// Margin of a robot of `length` m, m.

@@ -1,0 +1,40 @@
+//! How the followers of a scene file in; the formation gives them their places in the column.
+
+use crate::build::edge_law;
+use formation::column::Filing;
+use formation::{EdgeLaw, Narrowing};
+use scene::{Follow, Robot, Scene};
+
+/// The laws of all followers, in the order of the graph's edges: those that follow from the start, and those that join.
+pub(crate) fn edge_laws(scene: &Scene) -> Vec<EdgeLaw> {
+    let law =
+        |robot: &Robot, follow: &Follow| EdgeLaw { narrowing: narrowing(robot, follow), ..edge_law(follow) };
+    let from_the_start = scene.robots.iter().filter_map(|robot| Some(law(robot, robot.role.follow()?)));
+    let joining = scene.joining();
+    let later = joining.iter().filter_map(|(name, follow)| {
+        let robot = scene.robots.get(scene.index_of(name)?)?;
+        Some(law(robot, follow))
+    });
+    from_the_start.chain(later).collect()
+}
+
+/// How a follower files in; `None` where it does not.
+pub(crate) fn filing(robot: &Robot, follow: &Follow) -> Option<Filing> {
+    let (rule, length) = (&follow.narrowing, robot.vehicle.body().length);
+    rule.narrows.then(|| Filing { spacing: rule.spacing_of(length), stagger: rule.stagger_of(length) })
+}
+
+fn narrowing(robot: &Robot, follow: &Follow) -> Option<Narrowing> {
+    let (rule, safety, body) = (&follow.narrowing, &robot.safety, robot.vehicle.body());
+    let ahead = if safety.acts(false) { safety.point_ahead_of(robot.vehicle.kind, body.length) } else { 0.0 };
+    filing(robot, follow).map(|filing| Narrowing {
+        filing,
+        column: [0.0; 2],
+        // What its filter keeps free beside the point ahead, and a little more.
+        half_width: body.radius() + safety.margin_of(body.length) + ahead + rule.room_of(body.length),
+        rate: rule.rate_of(body.length),
+        acceleration: rule.acceleration_of(body.length),
+        patience: rule.patience,
+        reserve: rule.reserve_of(body.length),
+    })
+}
