@@ -110,3 +110,9 @@ fn it_may_change_during_a_run() {
     let change = &load(&changed).changes[0];
     assert!(rule(&change.then, 1).narrows);
 }
+
+#[test]
+fn an_expectation_after_the_end_of_the_run_is_told() {
+    let scene = load(&format!("{START}\n[time]\nduration = 20.0\n[expect]\nwide_again_by = 30.0\n"));
+    assert!(scene.late().iter().any(|line| line.contains("`wide_again_by` of 30 s is after the end")));
+}

@@ -204,8 +204,13 @@ impl Scene {
             };
             late.push(format!("the change at {} s {more} after the end of the run at {end} s", first.at));
         }
-        let Expect { settled_after, settling_time, .. } = self.expect;
-        for (key, time) in [("settled_after", settled_after), ("settling_time", settling_time)] {
+        let Expect { settled_after, settling_time, wide_again_by, .. } = self.expect;
+        let times = [
+            ("settled_after", settled_after),
+            ("settling_time", settling_time),
+            ("wide_again_by", wide_again_by),
+        ];
+        for (key, time) in times {
             if let Some(time) = time.filter(|time| *time > end) {
                 late.push(format!(
                     "`{key}` of {time} s is after the end of the run at {end} s: it is not judged"
