@@ -311,3 +311,30 @@ fn a_copy_in_the_middle_of_an_event_goes_on_alike() {
     }
     assert_eq!(ends, again);
 }
+
+/// At a gate that is narrower than one robot the followers are held up: who would follow the lead robot gives up, those
+/// behind it stop, and the lead robot drives on.
+#[test]
+fn who_is_held_up_for_too_long_gives_up() {
+    let sets = [
+        "props.wall-left.from=[9.2, 0.25]",
+        "props.wall-right.from=[9.2, -0.25]",
+        "hand_over.held_up=4",
+        "time.duration=60",
+    ];
+    let scene = scene("gate-1.2", &sets);
+    let mut last = StepRecord::default();
+    let mut found = vec![];
+    let metrics = run(&scene, |record| {
+        let given_up = record.events.iter().filter(|event| event.kind == EventKind::GiveUp);
+        found.extend(given_up.map(|event| (event.robot, record.snapshot.time)));
+        last = record.clone();
+    });
+    assert_eq!(metrics.contacts, 0);
+    let robots: Vec<usize> = found.iter().map(|(robot, _)| *robot).collect();
+    assert!(robots.contains(&1) && robots.contains(&2), "{found:?}");
+    assert!((1..7).all(|robot| robots.iter().filter(|other| **other == robot).count() <= 1), "{found:?}");
+    assert!(found.iter().all(|(_, time)| *time < 40.0), "it ends: {found:?}");
+    let [lead, others @ ..] = &last.snapshot.robots[..] else { panic!("robots") };
+    assert!(lead.motion.speed > 0.79 && others.iter().all(|robot| robot.motion.speed < 0.02));
+}

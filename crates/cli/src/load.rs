@@ -74,5 +74,5 @@ pub(crate) fn stem(path: &Path) -> String {
     if let Ok(Some(link)) = link::meant(path) {
         return link.name().to_owned();
     }
-    path.file_stem().map_or_else(|| "scene".to_owned(), |s| s.to_string_lossy().into_owned())
+    scene::scene_name(path)
 }

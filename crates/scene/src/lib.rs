@@ -47,7 +47,7 @@ pub use edit::{ChangeText, EditError, SceneText};
 pub use link::{Link, LinkError, LinkOrigin, LinkProof, LinkedScene, TimedOverride};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
-pub use shipped::{SHIPPED, Shipped, nearest_shipped, shipped};
+pub use shipped::{SHIPPED, Shipped, nearest_shipped, scene_name, shipped};
 pub use text::node::composed;
 pub use types::{
     Change, Compensation, Environment, Event, Expect, Failure, Film, Follow, Ground, HandOver, Happening,

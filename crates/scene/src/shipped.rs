@@ -1,5 +1,7 @@
 //! The scenes that come with the program.
 
+use std::path::Path;
+
 /// A scene that comes with the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shipped {
@@ -88,6 +90,14 @@ pub fn shipped(name: &str) -> Option<&'static Shipped> {
     SHIPPED.iter().find(|shipped| shipped.name == name)
 }
 
+/// What a scene is called by its path: the name of one that is shipped, or the name of its file without the ending.
+pub fn scene_name(path: &Path) -> String {
+    // Names of shipped scenes have no ending, but may have a point.
+    let shipped = path.to_str().filter(|name| shipped(name).is_some()).map(str::to_owned);
+    let stem = || path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    shipped.or_else(stem).unwrap_or_else(|| "scene".to_owned())
+}
+
 /// The name nearest to `given`, where one may be meant.
 pub fn nearest_shipped(given: &str) -> Option<&'static str> {
     let scored = SHIPPED.iter().map(|shipped| (strsim::jaro_winkler(given, shipped.name), shipped.name));
@@ -97,7 +107,6 @@ pub fn nearest_shipped(given: &str) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
 
     #[test]
     fn every_scene_of_the_folder_is_shipped_and_has_a_title() {
@@ -111,6 +120,18 @@ mod tests {
         listed.sort_unstable();
         assert_eq!(names, listed);
         assert!(SHIPPED.iter().all(|shipped| !shipped.title().is_empty()));
+    }
+
+    #[test]
+    fn a_scene_has_the_name_of_its_file_or_its_own() {
+        for (path, name) in [
+            ("gate-1.2", "gate-1.2"),
+            ("a/gate-1.2.toml", "gate-1.2"),
+            ("mine.toml", "mine"),
+            ("..", "scene"),
+        ] {
+            assert_eq!(scene_name(Path::new(path)), name);
+        }
     }
 
     #[test]

@@ -71,7 +71,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             robots: members,
             edges,
             has_sensors: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
-            has_events: !scene.events.is_empty(),
+            has_events: !scene.events.is_empty() || scene.hand_over.held_up.is_some(),
             has_safety: scene.robots.iter().any(|robot| robot.proximity.range.is_some()),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),

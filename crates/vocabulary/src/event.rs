@@ -17,7 +17,7 @@ words! {
         Remove = "remove",
         /// Its leader failed and nobody else may lead it: it waits.
         Wait = "wait",
-        /// It has waited in vain, and stays where it is for good.
+        /// It has waited in vain, or has been held up for too long, and stays where it is for good.
         GiveUp = "give_up",
     }
 }

@@ -341,5 +341,5 @@ impl LabApp {
 }
 
 fn stem(path: &Path) -> String {
-    path.file_stem().map_or_else(|| "scene".to_owned(), |stem| stem.to_string_lossy().into_owned())
+    scene::scene_name(path)
 }

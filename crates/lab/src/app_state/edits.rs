@@ -173,7 +173,7 @@ impl AppState {
             face.texts.retain(|(sample, _)| *sample != change.sample);
             face.texts.extend(text.map(|text| (change.sample, text)));
             face.changes.retain(|before| before.sample != change.sample);
-            if !change.set.is_empty() {
+            if !change.is_empty() {
                 face.changes.push(change.clone());
             }
         }

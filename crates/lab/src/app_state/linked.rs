@@ -3,7 +3,7 @@
 use super::AppState;
 use crate::numbers::fixed;
 use crate::session::runner::RunRequest;
-use scene::{Link, LinkProof, LinkedScene, SensingKind, TimedOverride};
+use scene::{Event, Link, LinkProof, LinkedScene, SceneText, SensingKind, TimedOverride};
 use std::path::Path;
 use studies::link::LinkComparison;
 
@@ -96,11 +96,13 @@ impl AppState {
     pub fn link_to(&self, samples: u64, digest: &str, view: &str) -> Result<Link, String> {
         let branch = self.branches.get(self.branch).ok_or("There is no run")?;
         let home = self.draft.as_ref().map_or(Path::new("scene"), |draft| draft.home());
-        let name = home.file_stem().unwrap_or_default().to_string_lossy();
-        let mut link = Link::to_text(&self.base, &name).map_err(|error| error.to_string())?;
+        let name = scene::scene_name(home);
         // What is changed at the present takes effect with the next sample.
-        let shown = branch.changes.iter().filter(|change| self.cursor.is_none() || change.sample < samples);
-        for change in shown {
+        let shown =
+            || branch.changes.iter().filter(|change| self.cursor.is_none() || change.sample < samples);
+        let base = with_events(&self.base, shown().flat_map(|change| &change.events))?;
+        let mut link = Link::to_text(&base, &name).map_err(|error| error.to_string())?;
+        for change in shown() {
             for set in &change.set {
                 let set = set.parse().map_err(|error: scene::OverrideError| error.to_string())?;
                 link.changes.push(TimedOverride { at: rounded(change.time), set });
@@ -118,6 +120,19 @@ impl AppState {
         // What is copied can be opened.
         link.to_string().parse().map_err(|error: scene::LinkError| format!("This cannot be shared: {error}"))
     }
+}
+
+/// The text of a scene with what happened by hand: events have their own times.
+fn with_events<'a>(base: &str, events: impl Iterator<Item = &'a Event>) -> Result<String, String> {
+    let mut events = events.peekable();
+    if events.peek().is_none() {
+        return Ok(base.to_owned());
+    }
+    let mut text = SceneText::parse(base).map_err(|error| error.to_string())?;
+    for event in events {
+        text.add_table("events", &event.to_lines()).map_err(|error| error.to_string())?;
+    }
+    Ok(text.text())
 }
 
 /// A time of a sample without what is left over from its product, s.

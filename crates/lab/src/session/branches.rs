@@ -56,7 +56,8 @@ pub struct BranchChange {
 }
 
 impl BranchChange {
-    fn is_empty(&self) -> bool {
+    /// Whether nothing is set and nothing is to happen.
+    pub(crate) fn is_empty(&self) -> bool {
         self.set.is_empty() && self.events.is_empty()
     }
 }

@@ -127,3 +127,22 @@ fn the_place_of_a_robot_that_has_changed_its_leader_can_be_moved() {
     assert_eq!(record.leaders[1], Some(1));
     kept(&text, &mut rig);
 }
+
+/// A link carries what happened by hand: others come to the same run.
+#[test]
+fn a_link_leads_to_what_happened_by_hand() {
+    let text = straight();
+    let mut rig = Rig::new(&text);
+    to(&mut rig, 1.0);
+    rig.act(&[Action::Happen { robot: 2, what: Happens::Fails(Failure::Stop) }]);
+    to(&mut rig, 2.0);
+    let summary = rig.told(0);
+    let link = rig.app_state.link_to(summary.samples, &summary.digest, "snake").expect("a link");
+    let there = link.open().expect("a scene").scene;
+    let mut other = simulation::Simulation::new(simulation::build(&there).expect("a run"));
+    let mut digest = metrics::Digest::default();
+    for _ in 0..summary.samples {
+        digest.push(other.next_record().expect("a moment"));
+    }
+    assert_eq!(digest.text(), summary.digest, "{}", there.to_toml());
+}

@@ -1,7 +1,7 @@
 //! What happens to the formation while a run goes: robots change their leader, fail, join and part.
 
 use super::{Law, Narrowing, Observer, Path, Sensing};
-use crate::text::{Couple, angle_within, number, settings};
+use crate::text::{Couple, Optional, angle_within, number, settings};
 use serde::Serialize;
 use std::f64::consts::PI;
 use vocabulary::{ScalarTrajectory, words};
@@ -179,6 +179,9 @@ settings! {
         pub retry: f64 = 1.0, number("s").above(0.0).up_to(1e5);
         /// How long it waits before it stays where it is, s.
         pub patience: f64 = 10.0, number("s").from(0.0).up_to(1e5);
+        /// How long a follower may be held up, standing while the robot that it follows drives, before it stays where it is and
+        /// those behind it follow on without it, s; for ever if left out.
+        pub held_up: Option<f64> = None, Optional(number("s").above(0.0).up_to(1e5));
     }
 }
 

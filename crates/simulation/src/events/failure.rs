@@ -3,6 +3,7 @@
 //! Nobody waits for ever: who finds no leader tries again at intervals, and after a while stays where it is.
 
 use super::hand_over::{self, Move, set_alone};
+use super::trigger::BLOCKED;
 use super::{Duty, assignment, check::refused};
 use crate::simulation::Simulation;
 use formation::SetPointTrajectory;
@@ -254,6 +255,40 @@ pub(super) fn retry(run: &mut Simulation, time: f64) {
             }
         }
     }
+}
+
+/// Followers that have been held up for longer than `patience` s stay where they are, and those behind them go on without.
+pub(super) fn leave_behind(run: &mut Simulation, patience: f64, time: f64) {
+    let robots = &run.plant.world().snapshot().robots;
+    let speed = |robot: usize| robots[robot].motion.speed.abs();
+    let mut left = vec![];
+    for robot in 0..robots.len() {
+        let graph = run.formation.graph();
+        let drives = graph.leader_of(robot).is_some_and(|leader| speed(leader) > BLOCKED[1]);
+        let held = drives && speed(robot) < BLOCKED[0];
+        let since = &mut run.events.held_up[robot];
+        if !held {
+            *since = None;
+        } else if time - *since.get_or_insert(time) > patience {
+            left.push(robot);
+        }
+    }
+    for robot in left {
+        give_up(run, robot, time);
+    }
+}
+
+/// A follower stays where it is for good; those who follow it follow its leader, and keep their places if they can.
+fn give_up(run: &mut Simulation, robot: usize, time: f64) {
+    let graph = run.formation.graph();
+    let followers: Vec<usize> = graph.followers_of(robot).collect();
+    let Some(edge) = graph.edge_of(robot) else { return };
+    let leader = run.formation.edges()[edge].leader;
+    let lost = Lost { leader, place: place_of(run, edge, time), led: false };
+    run.events.duties[robot] = Duty::Stays;
+    stand(run, robot);
+    run.events.tell(EventRecord::done(EventKind::GiveUp, robot, None));
+    recover(run, &followers, lost, Recovery::Graft, time);
 }
 
 /// A robot stands from now on, as fast as it can come to it, and follows nobody.

@@ -87,6 +87,8 @@ pub struct HandOverRules {
     pub retry: f64,
     /// How long it waits, s.
     pub patience: f64,
+    /// How long a follower may be held up before it is left behind, s; `None` where it may be for ever.
+    pub held_up: Option<f64>,
 }
 
 impl Default for HandOverRules {
@@ -97,6 +99,7 @@ impl Default for HandOverRules {
             bearing_max: 105_f64.to_radians(),
             retry: 1.0,
             patience: 10.0,
+            held_up: None,
         }
     }
 }
@@ -122,6 +125,8 @@ pub(crate) struct Events {
     /// Since when the trigger of each event holds, and whether it has happened.
     watches: Vec<trigger::Watch>,
     duties: Vec<Duty>,
+    /// Since when each robot has been held up, s.
+    held_up: Vec<Option<f64>>,
     hand_overs: HandOvers,
     /// What happened at this sample.
     told: Vec<EventRecord>,
@@ -133,6 +138,7 @@ impl Events {
             watches: vec![trigger::Watch::default(); plan.events.len()],
             plan,
             duties: vec![Duty::Drives; robots],
+            held_up: vec![None; robots],
             hand_overs: HandOvers::default(),
             told: vec![],
         }
@@ -140,7 +146,7 @@ impl Events {
 
     /// Whether nothing is to happen, and nothing has happened.
     pub(crate) fn is_idle(&self) -> bool {
-        self.plan.events.is_empty()
+        self.plan.events.is_empty() && self.plan.hand_over.held_up.is_none()
     }
 
     /// Other events are to happen than were planned, those that have happened apart.
@@ -211,6 +217,9 @@ pub(crate) fn happen(run: &mut Simulation, time: f64) {
         }
     }
     failure::retry(run, time);
+    if let Some(patience) = plan.hand_over.held_up {
+        failure::leave_behind(run, patience, time);
+    }
 }
 
 fn start(run: &mut Simulation, action: &EventAction, time: f64) {

@@ -32,6 +32,7 @@ pub(crate) fn event_plan(scene: &Scene) -> Result<EventPlan, BuildError> {
             bearing_max: rules.bearing_max,
             retry: rules.retry,
             patience: rules.patience,
+            held_up: rules.held_up,
         },
     })
 }

@@ -45,7 +45,7 @@ pub(crate) struct Watch {
 }
 
 /// A robot slower than the first stands, a leader faster than the second drives, m/s.
-const BLOCKED: [f64; 2] = [0.02, 0.1];
+pub(super) const BLOCKED: [f64; 2] = [0.02, 0.1];
 
 /// Whether event number `index` happens now.
 pub(crate) fn fires(run: &mut Simulation, index: usize, trigger: &Trigger, time: f64) -> bool {
