@@ -179,6 +179,17 @@ fn what_cannot_be_is_refused_with_its_reason_and_the_run_goes_on() {
         let refused = found.iter().find(|(_, event)| !event.happened());
         assert_eq!(refused.map(|(_, event)| event.refusal), Some(refusal), "{text}: {found:?}");
     }
+    // An event that another one overtakes before it has taken hold.
+    let twice = "[[events]]\nat = 5.0\nrobot = \"cy\"\nleader = \"ann\"\n[[events]]\nat = 5.05\nrobot = \"cy\"\npath = { kind = \
+                 \"constant\", speed = 0.5 }\n";
+    let found = events(&parse(&chain(twice), &["law.kind=output-feedback"]));
+    let told: Vec<_> = found.iter().map(|(_, event)| (event.kind, event.refusal, event.event)).collect();
+    let expected =
+        [(EventKind::Follow, Refusal::Overtaken, Some(0)), (EventKind::Lead, Refusal::None, Some(1))];
+    assert_eq!(told, expected, "{found:?}");
+    let found = events(&parse(&chain("[[events]]\nat = 5.0\nassign = \"cy\"\n"), &[]));
+    let words: Vec<_> = found.iter().map(|(_, event)| (event.kind, event.refusal)).collect();
+    assert_eq!(words, [(EventKind::Assign, Refusal::Nothing)]);
     // Only those who look for their leader need to see it.
     let text = chain("[[events]]\nat = 5.0\nrobot = \"bob\"\nleader = \"lead\"\n");
     for (sensing, refusal) in
@@ -197,6 +208,49 @@ fn what_cannot_be_is_refused_with_its_reason_and_the_run_goes_on() {
     );
     let found = events(&parse(&text, &["robots.lead.path.turn_rate=0.3"]));
     assert_eq!(found.iter().map(|(_, event)| event.refusal).next(), Some(Refusal::Speed), "{found:?}");
+}
+
+/// What a scene asks for is judged by what took place, and a formation that is lost meets nothing.
+#[test]
+fn expectations_hold_events_against_the_scene() {
+    let judged = |events: &str, expect: &str| {
+        let scene = parse(&format!("{}[expect]\n{expect}\n", chain(events)), &[]);
+        let metrics = run(&scene, |_| {});
+        verdict(&scene, &metrics, true)
+            .into_iter()
+            .filter_map(|finding| Some((finding.key, finding.met?)))
+            .filter(|(key, _)| *key != "completed")
+            .collect::<Vec<_>>()
+    };
+    let fails = "[[events]]\nat = 4.0\nrobot = \"ann\"\nfails = \"stop\"\n";
+    let never =
+        "[[events]]\nwhen = { robot = \"lead\", reaches = [0.0, 50.0] }\nrobot = \"cy\"\nleader = \"ann\"\n";
+    let all = |events: &str| judged(events, "no_event_refused = true");
+    assert_eq!(all(fails), [("no_event_refused", true), ("nobody_left_behind", true)]);
+    assert_eq!(all(never), [("no_event_refused", false)]);
+    let waits = "[[events]]\nat = 4.0\nrobot = \"ann\"\nfails = \"stop\"\nrecovery = \"wait\"\n[hand_over]\ndistance = [0.5, 2.1]\n";
+    assert_eq!(judged(waits, ""), [("nobody_left_behind", false)]);
+    assert_eq!(judged(waits, "nobody_left_behind = false"), []);
+    // Everybody has gone: nothing is judged as if it had gone well.
+    let gone = ["ann", "bob", "cy"].map(|robot| {
+        format!("[[events]]\nat = 4.0\nrobot = \"{robot}\"\npath = {{ kind = \"constant\", speed = 0.5 }}\n")
+    });
+    let found = judged(&gone.concat(), "final_distance_error = 0.1\nsettling_time = 15.0");
+    assert_eq!(
+        found,
+        [("final_distance_error", false), ("settling_time", false), ("nobody_left_behind", true)]
+    );
+}
+
+/// A robot that drives on its own may stop where its path does, as it may once it has waited.
+#[test]
+fn a_robot_that_parts_may_stand() {
+    let text = chain("[[events]]\nat = 4.0\nrobot = \"ann\"\npath = { kind = \"constant\", speed = 0.0 }\n")
+        .replace("standing = true", "standing = false");
+    let mut last = StepRecord::default();
+    run(&parse(&text, &[]), |record| last = record.clone());
+    let speed = last.snapshot.robots[1].motion.speed;
+    assert!(speed.abs() < 1e-6, "{speed} m/s");
 }
 
 /// Whoever waits tries again, and in the end stays where it is: no recovery is endless, and the others drive on.
@@ -234,8 +288,8 @@ fn triggers_fire_once_at_the_place_and_after_the_time_they_say() {
     let times: Vec<f64> = lead.map(|(time, _)| *time).collect();
     assert_eq!(times.len(), 1);
     assert!((times[0] - 3.5 / 0.8).abs() < 0.02, "{times:?}");
-    let follows = found.iter().filter(|(_, event)| event.kind == EventKind::Follow).count();
-    assert_eq!(follows, 1, "{found:?}");
+    let moves = found.iter().filter(|(_, event)| event.kind == EventKind::Move).count();
+    assert_eq!(moves, 1, "{found:?}");
 }
 
 /// A robot that is held up by a wall is blocked, and after a time its follower goes on without it.

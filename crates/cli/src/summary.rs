@@ -128,7 +128,9 @@ fn edges(metrics: &Metrics) {
         "edge", "final error", "rms error", "settled", "limited"
     ));
     let channel = |e: [f64; 2]| format!("{:>10.4} m {:>8.3}°", e[0], e[1].to_degrees());
-    for edge in metrics.edges.iter().take(MOST_EDGES) {
+    // An edge that was never in force says nothing.
+    let edges = metrics.edges.iter().filter(|edge| edge.ended.is_none_or(|end| end > 0.0));
+    for edge in edges.take(MOST_EDGES) {
         let name = format!("{} → {}", edge.leader, edge.follower);
         let settled = match edge.ended {
             Some(time) => format!("to {time:.2} s"),

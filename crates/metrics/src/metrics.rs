@@ -117,6 +117,12 @@ pub struct EdgeMetrics {
 pub struct EventSummary {
     /// s.
     pub time: f64,
+    /// Which event of the scene asked for it, counted from 0; `None` where it came of itself.
+    pub event: Option<usize>,
+    /// What, by the word of its kind.
+    pub kind: &'static str,
+    /// To which robot.
+    pub robot: String,
     /// Whether it took place.
     pub happened: bool,
     /// What, in one sentence.
@@ -249,7 +255,14 @@ impl MetricsBuilder {
         }
         for event in &record.events {
             let words = event.words(&self.fleet);
-            self.events.push(EventSummary { time, happened: event.happened(), words });
+            self.events.push(EventSummary {
+                time,
+                event: event.event,
+                kind: event.kind.word(),
+                robot: self.fleet.name(EntityId::Robot(event.robot)).to_owned(),
+                happened: event.happened(),
+                words,
+            });
         }
         self.clearance.push(&record.snapshot);
         for contact in &record.contacts {

@@ -65,7 +65,7 @@ fn observed(run: &Trace) -> Option<ReportFigure> {
         matches!(robot.map(|r| &r.role), Some(Role::Follow(f)) if f.law.kind == LawKind::OutputFeedback)
     };
     let settled = |edge: &usize| run.settled(*edge).unwrap_or(0.0);
-    let edges = (0..run.fleet.edges.len()).filter(observes);
+    let edges = (0..run.fleet.edges.len()).filter(|edge| run.follows(*edge)).filter(observes);
     let edge = edges.max_by(|a, b| settled(a).total_cmp(&settled(b)).then(b.cmp(a)))?;
     let caption = format!(
         "What the observer of {} makes of the rates of distance and bearing, beside the true ones; below, the size of the \
@@ -82,7 +82,7 @@ fn comparisons(scene: &Scene, runs: &[FinishedRun], report: &mut Report) {
     } else {
         let all = LAWS.iter().filter_map(|k| Some((short(*k), find(runs, Case::Own, Variant::law(*k))?)));
         let all: Vec<(&str, &Trace)> = all.collect();
-        let about = LawComparison { runs: &all, edge: 0, start, of: &scene.title };
+        let about = LawComparison { runs: &all, edge: compared(&all), start, of: &scene.title };
         report.items.extend([about.laws_inputs("laws-inputs"), about.laws_errors("laws-errors")]);
     }
     if let Some(why) = constants_apart(scene) {
@@ -91,10 +91,16 @@ fn comparisons(scene: &Scene, runs: &[FinishedRun], report: &mut Report) {
         let named = |e: f64| Some((format!("ε = {}", plain(e)), find(runs, Case::Own, Variant::epsilon(e))?));
         let names: Vec<(String, &Trace)> = constants(scene).into_iter().filter_map(named).collect();
         let all: Vec<(&str, &Trace)> = names.iter().map(|(name, run)| (name.as_str(), *run)).collect();
-        let about = LawComparison { runs: &all, edge: 0, start, of: &scene.title };
+        let about = LawComparison { runs: &all, edge: compared(&all), start, of: &scene.title };
         let items = [about.constants_inputs("constants-inputs"), about.constants_errors("constants-errors")];
         report.items.extend(items);
     }
+}
+
+/// The first edge whose follower follows at the end of all runs.
+fn compared(runs: &[(&str, &Trace)]) -> usize {
+    let edges = runs.first().map_or(0, |(_, run)| run.fleet.edges.len());
+    (0..edges).find(|edge| runs.iter().all(|(_, run)| run.follows(*edge))).unwrap_or(0)
 }
 
 /// What the scene expects of its run, as claims without numbers of their own.

@@ -67,6 +67,11 @@ impl Trace {
         after.min(self.times.len().saturating_sub(1))
     }
 
+    /// Whether the follower of an edge follows at the end.
+    pub fn follows(&self, edge: usize) -> bool {
+        self.metrics.edges.get(edge).is_some_and(|edge| edge.ended.is_none())
+    }
+
     /// Settled ‖e‖ of an edge: root mean square from [`Trace::late_from`] on, m and rad taken together.
     pub fn settled(&self, edge: usize) -> Option<f64> {
         let [distance, bearing] = self.metrics.edges.get(edge)?.late_rms_error;

@@ -141,6 +141,12 @@ impl EventDraft<'_> {
         ];
         let mut given = given.into_iter().flatten();
         let (Some(holds), None) = (given.next(), given.next()) else {
+            let named = ["reaches", "clearance_below", "lost_for", "blocked_for"];
+            // What is given, and wrong, has been told.
+            let node = self.node.get("when");
+            if named.iter().filter(|key| node.is_some_and(|node| node.get(key).is_some())).count() == 1 {
+                return None;
+            }
             let message =
                 "give one of `reaches`, `clearance_below`, `lost_for` and `blocked_for` here, and no more";
             reporter.report(span, message);

@@ -140,6 +140,10 @@ fn what_cannot_be_is_said_where_it_stands() {
         let found = fault(events);
         assert!(found.contains(words), "{events}: {found}");
     }
+    let place =
+        "[[events]]\nwhen = { robot = \"bob\", reaches = [nan, 0.0] }\nrobot = \"bob\"\nfails = \"stop\"\n";
+    let found = fault(place);
+    assert!(found.contains("reaches") && !found.contains("give one of"), "{found}");
 }
 
 #[test]

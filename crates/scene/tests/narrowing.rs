@@ -115,4 +115,7 @@ fn it_may_change_during_a_run() {
 fn an_expectation_after_the_end_of_the_run_is_told() {
     let scene = load(&format!("{START}\n[time]\nduration = 20.0\n[expect]\nwide_again_by = 30.0\n"));
     assert!(scene.late().iter().any(|line| line.contains("`wide_again_by` of 30 s is after the end")));
+    let events = "\n[time]\nduration = 20.0\n[[events]]\nat = 25.0\nrobot = \"bob\"\nfails = \"stop\"\n";
+    let late = load(&format!("{START}{events}")).late();
+    assert_eq!(late, ["`events.0` at 25 s comes after the end of the run at 20 s"]);
 }

@@ -105,14 +105,22 @@ fn told(simulation: &Simulation, lead: usize, path: &dyn Trajectory, duration: f
         laws.map(|(law, wide)| law.narrowing.map_or(*wide, |rule| rule.place(*wide, level))).collect()
     };
     let column = filed(formation::Narrowing::COLUMN);
-    let followers: Vec<usize> = (0..wide.len()).filter(|index| leads(simulation, *index) == lead).collect();
+    let edges = formation.edges();
+    let follows = |index: &usize| graph.is_in_force(*index) && graph.head_of(edges[*index].follower) == lead;
+    let followers: Vec<usize> = (0..edges.len()).filter(follows).collect();
     if followers.is_empty() {
         return vec![];
     }
-    let members = followers.iter().map(|index| formation.edges()[*index].follower);
-    let beside =
-        members.map(|robot| simulation.room_beside(robot)).fold(simulation.room_beside(lead), f64::max);
+    let kept = |index: &usize| simulation.room_beside(edges[*index].follower);
+    // A follower files in for what it would like to be free beside it; that is more than its filter keeps.
+    let liked = |index: &usize| {
+        formation.laws()[*index].narrowing.map_or(0.0, |rule| rule.half_width).max(kept(index))
+    };
+    let of_lead = simulation.room_beside(lead);
+    let least = followers.iter().map(kept).fold(of_lead, f64::max);
+    let beside = followers.iter().map(liked).fold(of_lead, f64::max);
     let needed = |places: &[[f64; 2]]| half_widths(graph, places, lead).map(|side| side + beside);
+    let at_least = |places: &[[f64; 2]]| half_widths(graph, places, lead).map(|side| side + least);
     let body = &fleet.robots[lead].body;
     let start = simulation.record().snapshot.robots[lead].motion.pose;
     let of_wide = needed(&wide);
@@ -125,10 +133,8 @@ fn told(simulation: &Simulation, lead: usize, path: &dyn Trajectory, duration: f
         0.5 * body.height,
     );
     let Some(gate) = gate else { return vec![] };
-    let width = |places: &[[f64; 2]]| {
-        let [right, left] = needed(places);
-        format!("{:.2} m", right + left)
-    };
+    let metres = |[right, left]: [f64; 2]| format!("{:.2} m", right + left);
+    let width = |places: &[[f64; 2]]| metres(needed(places));
     let mut words = vec![];
     let [x, y] = gate.at;
     let who = match followers.len() {
@@ -156,27 +162,29 @@ fn told(simulation: &Simulation, lead: usize, path: &dyn Trajectory, duration: f
         format!("{opening} and do not fit; as a column they take {} and do", width(&column))
     } else if gate.room(needed(&single)) >= 0.0 {
         format!("{opening} and do not fit; in single file they take {} and do", width(&single))
-    } else {
+    } else if gate.room(at_least(&single)) >= 0.0 {
         format!(
-            "{opening} and do not fit, nor in single file: {}, {} on one side",
+            "{opening} and do not fit; in single file they take {}, {} at the least: it is close",
             width(&single),
-            short_of(&single)
+            metres(at_least(&single))
         )
+    } else {
+        let missing = -gate.room(at_least(&single));
+        let single = metres(at_least(&single));
+        format!("{opening} and do not fit, nor in single file: {single}, {missing:.2} m too much on one side")
     });
+    let ahead = followers.iter().map(|index| simulation.looks_ahead(edges[*index].follower));
+    let ahead = ahead.fold(simulation.looks_ahead(lead), f64::max);
+    if narrows && (-ahead..0.0).contains(&gate.room(at_least(&single))) {
+        let point = short(ahead);
+        words.push(format!(
+            "of that a filter's `point_ahead` of {point} m takes {point} m on each side: a smaller one may do"
+        ));
+    }
     if gate.room(of_wide) < 0.0 {
         words.extend(short_sighted(simulation, &followers, path, duration));
     }
     words
-}
-
-/// The robot at the head of the formation that the follower of edge `index` is in.
-fn leads(simulation: &Simulation, index: usize) -> usize {
-    let edges = simulation.formation().edges();
-    let mut robot = edges[index].leader;
-    while let Some(edge) = edges.iter().find(|edge| edge.follower == robot) {
-        robot = edge.leader;
-    }
-    robot
 }
 
 /// The follower whose sensor reaches least, where it tells of a gate too late.

@@ -216,9 +216,18 @@ impl Simulation {
     /// How far beside the middle of a robot nothing else may be, m: the circle around its body, and what its filter keeps free
     /// beside that, which it does of the point ahead.
     pub(crate) fn room_beside(&self, robot: usize) -> f64 {
-        let filter = self.safety.as_ref().and_then(|safety| safety.filters[robot]);
+        let filter = self.filter(robot);
         self.fleet.robots[robot].body.radius()
             + filter.map_or(0.0, |filter| filter.margin + filter.point_ahead)
+    }
+
+    /// How far ahead of its middle the point is that the filter of a robot keeps clear of things, m.
+    pub(crate) fn looks_ahead(&self, robot: usize) -> f64 {
+        self.filter(robot).map_or(0.0, |filter| filter.point_ahead)
+    }
+
+    fn filter(&self, robot: usize) -> Option<safety::Parameters> {
+        self.safety.as_ref().and_then(|safety| safety.filters[robot])
     }
 
     /// How far a robot senses what is near it, m; `None` where it does not.

@@ -63,7 +63,9 @@ pub(crate) fn handling(scene: &Scene, robot: &scene::Robot) -> Handling {
     let vehicle = &robot.vehicle;
     let wheels = vehicle.kind.has_wheels().then(|| Arc::new(wheeled(vehicle)));
     let limits = robot.limits();
-    let stands = joins_standing(scene, &robot.name);
+    // Who leads by commands stops where its motion does.
+    let chases = matches!(robot.role, Role::Lead { .. }) && robot.safety.acts(true);
+    let stands = chases || joins_standing(scene, &robot.name);
     Handling { limits: if stands { Limits { speed_min: 0.0, ..limits } } else { limits }, wheels }
 }
 

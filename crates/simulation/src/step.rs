@@ -95,10 +95,10 @@ fn apply_changes(run: &mut Simulation) -> Vec<usize> {
 fn apply(run: &mut Simulation, parameters: &ParameterSet, woken: &mut Vec<usize>) {
     let pairs = run.formation.laws().iter().zip(&parameters.laws).enumerate();
     woken.extend(pairs.filter(|(_, (before, after))| wakes(before, after)).map(|(edge, _)| edge));
-    // Who stands for good has no least speed.
+    // Who has stood or led since has no least speed.
     for (robot, (now, next)) in run.handling.iter_mut().zip(&parameters.handling).enumerate() {
         now.clone_from(next);
-        if !run.events.drives(robot) {
+        if run.events.may_stand(robot) {
             now.limits.speed_min = 0.0;
         }
     }

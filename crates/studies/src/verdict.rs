@@ -1,8 +1,9 @@
 //! What a run showed, held against what its scene expects.
 
-use metrics::{EdgeMetrics, JudgedExpectation, Metrics, STANDING_AFTER, StandingMetrics};
+use metrics::{EdgeMetrics, EventSummary, JudgedExpectation, Metrics, STANDING_AFTER, StandingMetrics};
 use scene::{Expect, OnContact, Scene};
 use simulation::{NotFinite, short};
+use vocabulary::{EventKind, Word};
 
 /// What every scene expects, and was not met.
 pub(crate) fn not_finite(fault: &NotFinite) -> JudgedExpectation {
@@ -14,7 +15,8 @@ pub(crate) fn not_finite(fault: &NotFinite) -> JudgedExpectation {
 pub fn verdict(scene: &Scene, metrics: &Metrics, completed: bool) -> Vec<JudgedExpectation> {
     // Where the scene ends a run at a contact, that is its end.
     let stopped = scene.physics.on_contact == OnContact::Stop && metrics.contacts > 0;
-    let mut findings = expectations(&scene.expect, metrics, completed || stopped);
+    let planned = scene.events.len();
+    let mut findings = expectations(&scene.expect, planned, metrics, completed || stopped);
     if scene.physics.on_contact == OnContact::Fail && !scene.expect.no_contact {
         let mut more = ExpectationJudge { metrics, list: Vec::new() };
         more.contacts("on_contact", "none, else the run fails".into(), |count| count == 0);
@@ -23,7 +25,12 @@ pub fn verdict(scene: &Scene, metrics: &Metrics, completed: bool) -> Vec<JudgedE
     findings
 }
 
-fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<JudgedExpectation> {
+fn expectations(
+    expect: &Expect,
+    planned: usize,
+    metrics: &Metrics,
+    completed: bool,
+) -> Vec<JudgedExpectation> {
     let mut findings = ExpectationJudge { metrics, list: Vec::new() };
     if expect.completed {
         let found = format!("{:.2} s", metrics.duration);
@@ -89,7 +96,10 @@ fn expectations(expect: &Expect, metrics: &Metrics, completed: bool) -> Vec<Judg
         findings.limited(most);
     }
     if expect.no_event_refused {
-        findings.refused();
+        findings.refused(planned);
+    }
+    if expect.nobody_left_behind {
+        findings.left_behind();
     }
     if let Some(range) = expect.speed_within {
         findings.speeds(range, expect.settling_time);
@@ -144,18 +154,52 @@ impl<'a> ExpectationJudge<'a> {
         let percent = |share: f64| format!("{:.2} %", share * 100.0);
         let (found, met) = match self.followed().max_by(|a, b| a.limited.total_cmp(&b.limited)) {
             Some(edge) => (format!("{} on {}", percent(edge.limited), name(edge)), edge.limited <= most),
-            None => ("no edges".into(), true),
+            None => self.nobody_follows(),
         };
         self.add("limited_at_most", format!("≤ {} of the samples", percent(most)), found, met);
     }
 
-    fn refused(&mut self) {
-        let refused = self.metrics.events.iter().find(|event| !event.happened);
-        let (found, met) = match refused {
-            Some(event) => (format!("at {:.2} s {}", event.time, event.words), false),
-            None => (vocabulary::counted(self.metrics.events.len() as u64, "event"), true),
+    /// Every one of the events `planned` took place, and none was refused.
+    fn refused(&mut self, planned: usize) {
+        let events = || self.metrics.events.iter();
+        let refused = events().find(|event| !event.happened);
+        let took_place = |index: &usize| events().any(|e| e.happened && e.event == Some(*index));
+        let missing = (0..planned).find(|index| !took_place(index));
+        let (found, met) = match (refused, missing) {
+            (Some(event), _) => (format!("at {:.2} s {}", event.time, event.words), false),
+            (None, Some(index)) => (format!("events.{index} had not taken place at the end"), false),
+            (None, None) => (vocabulary::counted(planned as u64, "event"), true),
         };
         self.add("no_event_refused", "every event takes place".into(), found, met);
+    }
+
+    /// Nobody waits at the end, or stays where it is for good; said only of runs in which something happened.
+    fn left_behind(&mut self) {
+        let events = || self.metrics.events.iter().filter(|event| event.happened);
+        if events().next().is_none() {
+            return;
+        }
+        let mut last = std::collections::BTreeMap::new();
+        for event in events() {
+            last.insert(&event.robot, event);
+        }
+        let waits = |event: &&EventSummary| {
+            [EventKind::Wait, EventKind::GiveUp].map(Word::word).contains(&event.kind)
+        };
+        let (found, met) = match last.into_values().find(waits) {
+            Some(event) => (format!("at {:.2} s {}", event.time, event.words), false),
+            None => ("nobody".to_owned(), true),
+        };
+        self.add("nobody_left_behind", "nobody".into(), found, met);
+    }
+
+    /// What is found where no edge is judged: fine where the scene has none, not where all have ended.
+    fn nobody_follows(&self) -> (String, bool) {
+        if self.metrics.edges.is_empty() {
+            ("no edges".into(), true)
+        } else {
+            ("nobody follows at the end".into(), false)
+        }
     }
 
     fn lift(&mut self, most: f64) {
@@ -204,7 +248,7 @@ impl<'a> ExpectationJudge<'a> {
         let wanted = format!("≤ {} {unit}", short(most));
         let (found, met) = match self.largest(channel, value) {
             Some((edge, size)) => (format!("{size:.6} {unit} on {}", name(edge)), size <= most),
-            None => ("no edges".into(), true),
+            None => self.nobody_follows(),
         };
         self.add(key, wanted, found, met);
     }
@@ -296,7 +340,7 @@ impl<'a> ExpectationJudge<'a> {
         let (found, met) = match (unsettled, slowest.max_by(|a, b| a.0.total_cmp(&b.0))) {
             (Some(edge), _) => (format!("{} does not settle", name(edge)), false),
             (None, Some((time, edge))) => (format!("{time:.2} s on {}", name(edge)), time <= latest),
-            (None, None) => ("no edges".into(), true),
+            (None, None) => self.nobody_follows(),
         };
         self.add("settling_time", wanted, found, met);
     }
@@ -363,7 +407,7 @@ mod tests {
     }
 
     fn met(expect: &Expect, metrics: &Metrics, key: &str) -> Vec<bool> {
-        expectations(expect, metrics, true).iter().filter(|f| f.key == key).filter_map(|f| f.met).collect()
+        expectations(expect, 0, metrics, true).iter().filter(|f| f.key == key).filter_map(|f| f.met).collect()
     }
 
     #[test]
@@ -372,7 +416,7 @@ mod tests {
         let with = |duration: f64, end: Option<Option<f64>>| {
             let mut metrics = Metrics { duration, ..metrics() };
             metrics.edges[0].narrowing = end.map(|end| NarrowingMetrics { largest: 1.0, begin: 2.0, end });
-            expectations(&expect, &metrics, true)
+            expectations(&expect, 0, &metrics, true)
                 .into_iter()
                 .find(|f| f.key == "wide_again_by")
                 .expect("judged")
@@ -453,7 +497,7 @@ mod tests {
 
     #[test]
     fn a_robot_that_cannot_drive_is_named() {
-        let findings = expectations(&Expect { all_able: true, ..Expect::default() }, &metrics(), true);
+        let findings = expectations(&Expect { all_able: true, ..Expect::default() }, 0, &metrics(), true);
         assert!(findings.iter().any(|f| f.failed() && f.found.contains("`ann` is stuck")), "{findings:?}");
     }
 
@@ -469,7 +513,7 @@ mod tests {
         metrics.contacts = 1;
         metrics.edges[0].settling_time = None;
         let expect = Expect { no_contact: true, settling_time: Some(9.0), ..Expect::default() };
-        let findings = expectations(&expect, &metrics, false);
+        let findings = expectations(&expect, 0, &metrics, false);
         assert_eq!(findings.iter().filter(|f| f.failed()).count(), 3);
         assert!(findings.iter().any(|f| f.found.contains("bob` does not settle")), "{findings:?}");
     }
@@ -487,12 +531,12 @@ mod tests {
         let mut metrics = metrics();
         metrics.edges[0].settling_time = None;
         metrics.edges[0].settled_speeds = None;
-        let findings = expectations(&expect, &metrics, true);
+        let findings = expectations(&expect, 0, &metrics, true);
         let open: Vec<_> = findings.iter().filter(|f| f.met.is_none()).collect();
         assert_eq!(open.len(), 6, "{findings:?}");
         assert_eq!(open[0].found, "the run ended at 15.00 s, before 16 s");
         metrics.duration = 30.0;
-        let findings = expectations(&expect, &metrics, true);
+        let findings = expectations(&expect, 0, &metrics, true);
         assert!(findings.iter().all(|f| f.met.is_some()), "{findings:?}");
     }
 }

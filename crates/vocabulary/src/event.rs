@@ -7,6 +7,10 @@ words! {
     pub enum EventKind = Follow {
         /// It follows another robot from now on.
         Follow = "follow",
+        /// It takes another place behind the robot that it follows.
+        Move = "move",
+        /// Those who follow it take their places anew.
+        Assign = "assign",
         /// It follows nobody from now on, and drives on its own.
         Lead = "lead",
         /// It failed, and brakes to a stand.
@@ -47,6 +51,8 @@ words! {
         Speed = "speed",
         /// There is no such place or robot any more.
         Nothing = "nothing",
+        /// Another event came before it had taken hold.
+        Overtaken = "overtaken",
     }
 }
 
@@ -65,6 +71,8 @@ pub struct EventRecord {
     pub obstacle: Option<EntityId>,
     /// What was measured, and the bound that it exceeds, m, rad or m/s; zero where a refusal is not about a number.
     pub measured: [f64; 2],
+    /// By which event of the scene, counted from 0 in its order; `None` where none asked for it at this moment.
+    pub event: Option<usize>,
 }
 
 impl EventRecord {
@@ -85,6 +93,8 @@ impl EventRecord {
         if self.happened() {
             return match self.kind {
                 EventKind::Follow => format!("{robot} follows {leader}"),
+                EventKind::Move => format!("{robot} takes another place behind {leader}"),
+                EventKind::Assign => format!("those behind {robot} take their places anew"),
                 EventKind::Lead => format!("{robot} drives on its own"),
                 EventKind::Stop => format!("{robot} fails and stops"),
                 EventKind::Coast => format!("{robot} fails and rolls to a stand"),
@@ -95,6 +105,8 @@ impl EventRecord {
         }
         let wanted = match self.kind {
             EventKind::Follow => format!("{robot} cannot follow {leader}"),
+            EventKind::Move => format!("{robot} cannot take another place behind {leader}"),
+            EventKind::Assign => format!("those behind {robot} cannot take their places anew"),
             EventKind::Lead => format!("{robot} cannot drive on its own"),
             _ => format!("{robot} cannot fail"),
         };
@@ -106,7 +118,7 @@ impl EventRecord {
         match self.refusal {
             Refusal::None => String::new(),
             Refusal::Cycle => format!("{leader} follows it"),
-            Refusal::Leaderless => format!("{leader} itself has no leader that drives"),
+            Refusal::Leaderless => format!("{leader} does not drive, or follows one that does not"),
             Refusal::Failed => "it has failed".to_owned(),
             Refusal::Far => format!("it is {measured:.2} m away, more than {bound:.2} m"),
             Refusal::Near => format!("its place would be {measured:.2} m away, less than {bound:.2} m"),
@@ -123,7 +135,9 @@ impl EventRecord {
             Refusal::Speed => {
                 format!("its place moves at {measured:.2} m/s, faster than the {bound:.2} m/s it can drive")
             }
-            Refusal::Nothing => "there is nothing left to follow".to_owned(),
+            Refusal::Nothing if self.kind == EventKind::Assign => "there is nobody behind it".to_owned(),
+            Refusal::Nothing => "there is nobody left to follow".to_owned(),
+            Refusal::Overtaken => "another event came first".to_owned(),
         }
     }
 }

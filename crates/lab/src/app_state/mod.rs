@@ -336,8 +336,10 @@ impl AppState {
             return false;
         };
         let time = self.time() + 1e-9;
-        let follows =
-            |event: &EventRecord| event.robot == robot && event.kind == EventKind::Follow && event.happened();
+        let follows = |event: &EventRecord| {
+            let gives = matches!(event.kind, EventKind::Follow | EventKind::Move);
+            event.robot == robot && gives && event.happened()
+        };
         let events = history.events(self.branch).iter().rev();
         let mut given = events.filter(|(at, event)| *at <= time && follows(event)).map(|(at, _)| *at);
         let Some(given) = given.next() else { return false };

@@ -217,7 +217,10 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     let pair =
         |edge: usize| fleet.edges.get(edge).map_or_else(String::new, |edge| fleet.pair(*edge).join(" → "));
     if !record.leaders.is_empty() {
-        let leaders = record.leaders.iter().map(|leader| leader.map_or("nobody", name));
+        let leaders = record.leaders.iter().enumerate().map(|(edge, leader)| {
+            let follower = fleet.edges.get(edge).map_or("?", |edge| name(edge.follower));
+            format!("{follower} follows {}", leader.map_or("nobody", name))
+        });
         all.add("leaders", ComparedValue::Word(leaders.collect::<Vec<_>>().join(", ")));
     }
     // What a follower wanted stands before what became of it.

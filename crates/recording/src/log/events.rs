@@ -25,7 +25,10 @@ impl Record for EventMessage {
         f.text("words", words)?;
         f.word("kind", &mut event.kind)?;
         f.count("robot_index", &mut event.robot)?;
-        // Counted from 1, since 0 is nobody.
+        // Both are counted from 1, since 0 is none.
+        let mut number = event.event.map_or(0, |event| event as u64 + 1);
+        f.count("event_number", &mut number)?;
+        event.event = number.checked_sub(1).and_then(|event| usize::try_from(event).ok());
         let mut leader = event.leader.map_or(0, |leader| leader as u64 + 1);
         f.count("leader_number", &mut leader)?;
         event.leader = leader.checked_sub(1).and_then(|leader| usize::try_from(leader).ok());

@@ -182,6 +182,7 @@ fn event(n: &mut Numbers) -> EventRecord {
         refusal: Refusal::WORDS[n.below(Refusal::WORDS.len())].1,
         obstacle: [None, Some(EntityId::Robot(0)), Some(EntityId::Prop(1))][n.below(3)],
         measured: n.many(),
+        event: [None, Some(0), Some(7)][n.below(3)],
     }
 }
 

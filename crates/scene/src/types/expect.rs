@@ -52,8 +52,8 @@ settings! {
         pub standing_turn_rate_at_most: Option<f64> = None, Optional(number("rad/s").from(0.0));
         /// How far from its set point any follower may be whose leader has stood for 2 s, m.
         pub standing_error_at_most: Option<f64> = None, Optional(LENGTH);
-        /// Time from which on every follower is back at its set point that filed in where there was no room, s; one at least
-        /// has to have filed in.
+        /// Time from which on every follower that filed in keeps its place in the shape again, s, wherever it is by then; one
+        /// at least has to have filed in.
         pub wide_again_by: Option<f64> = None, Optional(number("s").from(0.0));
         /// Share of the measurements that arrived in which every follower has to have recognised its leader.
         pub in_view_at_least: Option<f64> = None, Optional(number("").from(0.0).up_to(1.0));
@@ -69,6 +69,8 @@ settings! {
         pub limited_at_most: Option<f64> = None, Optional(number("").from(0.0).up_to(1.0));
         /// Whether every event has to take place.
         pub no_event_refused: bool = false, Flag;
+        /// Whether no robot may be left waiting, or have given up, at the end of a run in which something happened.
+        pub nobody_left_behind: bool = true, Flag;
         /// Largest height of any robot's ground point over the ground, m: jumps and climbs.
         pub lift_at_most: Option<f64> = None, Optional(LENGTH);
     }

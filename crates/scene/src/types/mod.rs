@@ -204,6 +204,13 @@ impl Scene {
             };
             late.push(format!("the change at {} s {more} after the end of the run at {end} s", first.at));
         }
+        let at = |event: &Event| match event.trigger {
+            Trigger::At { at } => Some(at).filter(|at| *at > end),
+            Trigger::When { .. } => None,
+        };
+        for (index, time) in self.events.iter().enumerate().filter_map(|(k, event)| Some((k, at(event)?))) {
+            late.push(format!("`events.{index}` at {time} s comes after the end of the run at {end} s"));
+        }
         let Expect { settled_after, settling_time, wide_again_by, .. } = self.expect;
         let times = [
             ("settled_after", settled_after),

@@ -20,14 +20,16 @@ struct Slot {
 /// All who follow `head`, directly or through others, take their places anew.
 pub(super) fn assign(run: &mut Simulation, head: usize, time: f64) {
     let (robots, slots) = formation(run, head, time);
+    let done = EventRecord::done(EventKind::Assign, head, None);
     if robots.is_empty() {
-        let refusal = Refusal::Nothing;
-        run.events.tell(EventRecord { refusal, ..EventRecord::done(EventKind::Follow, head, None) });
+        run.events.tell(EventRecord { refusal: Refusal::Nothing, ..done });
         return;
     }
     match moves(run, head, &robots, &slots) {
-        Ok(moves) if moves.is_empty() => {}
-        Ok(moves) => hand_over::begin(run, moves, time),
+        Ok(moves) => {
+            run.events.tell(done);
+            hand_over::begin(run, moves, time);
+        }
         Err(refused) => run.events.tell(refused),
     }
 }

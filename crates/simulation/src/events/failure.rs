@@ -2,7 +2,7 @@
 //!
 //! Nobody waits for ever: who finds no leader tries again at intervals, and after a while stays where it is.
 
-use super::hand_over::{self, Move, set_alone};
+use super::hand_over::{self, Move, let_stand, set_alone};
 use super::trigger::BLOCKED;
 use super::{Duty, assignment, check::refused};
 use crate::simulation::Simulation;
@@ -10,7 +10,7 @@ use formation::SetPointTrajectory;
 use formation::lead::AnalyticTrajectory;
 use std::f64::consts::PI;
 use std::sync::Arc;
-use vocabulary::{EventKind, EventRecord, Limits, Refusal, Trajectory, math};
+use vocabulary::{EventKind, EventRecord, Refusal, Trajectory, math};
 
 /// What becomes of those who follow a robot that fails. Where that cannot be, the next is tried.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -294,10 +294,7 @@ fn give_up(run: &mut Simulation, robot: usize, time: f64) {
 /// A robot stands from now on, as fast as it can come to it, and follows nobody.
 fn stand(run: &mut Simulation, robot: usize) {
     set_alone(run, robot, Arc::new(AnalyticTrajectory::constant(0.0, 0.0)));
-    let limits = Limits { speed_min: 0.0, ..*run.formation.limits(robot) };
-    run.formation.set_limits(robot, limits);
-    run.handling[robot].limits = limits;
-    run.plant.world_mut().apply_parameters(&run.handling);
+    let_stand(run, robot);
 }
 
 /// Where the follower of an edge is to be, [forward, left] of its leader in m.

@@ -4,7 +4,7 @@ use super::{Duty, check::refused};
 use crate::simulation::Simulation;
 use formation::{EdgeLaw, Estimate, HandOver, Observer, SetPointTrajectory};
 use std::sync::Arc;
-use vocabulary::{Edge, EventKind, EventRecord, LawKind, Observation, Refusal, Relative, Trajectory};
+use vocabulary::{Edge, EventKind, EventRecord, LawKind, Limits, Observation, Refusal, Relative, Trajectory};
 
 /// A robot that is about to follow another.
 #[derive(Debug, Clone)]
@@ -25,6 +25,8 @@ struct Pending {
     moves: Vec<Move>,
     /// When they do, s.
     due: f64,
+    /// By which event.
+    event: Option<usize>,
 }
 
 /// All changes of leader that are about to take hold.
@@ -52,19 +54,24 @@ pub(super) fn follow(
     place: Option<SetPointTrajectory>,
     time: f64,
 ) {
+    let kind = kind(run, robot, leader);
     let wanted = place.as_ref().map(|place| place.at(time).value);
     if let Some(refused) = refused(run, robot, leader, wanted) {
-        run.events.tell(refused);
+        run.events.tell(EventRecord { kind, ..refused });
         return;
     }
     let Some(edge) = run.formation.graph().slot_of(robot) else {
         let refusal = Refusal::Nothing;
-        run.events
-            .told
-            .push(EventRecord { refusal, ..EventRecord::done(EventKind::Follow, robot, Some(leader)) });
+        run.events.tell(EventRecord { refusal, ..EventRecord::done(kind, robot, Some(leader)) });
         return;
     };
     begin(run, vec![Move { edge, leader, place, estimate: None }], time);
+}
+
+/// Whether a robot that is to follow `leader` does already, and only moves.
+fn kind(run: &Simulation, robot: usize, leader: usize) -> EventKind {
+    let follows = run.formation.graph().leader_of(robot) == Some(leader);
+    if follows { EventKind::Move } else { EventKind::Follow }
 }
 
 /// Lets new observers settle before robots follow others, all of them at once.
@@ -80,10 +87,29 @@ pub(super) fn begin(run: &mut Simulation, mut moves: Vec<Move>, time: f64) {
     }
     // What is decided last holds.
     let moved: Vec<usize> = moves.iter().map(|step| step.edge).collect();
+    overtake(run, &moved);
+    let event = run.events.current;
+    run.events.hand_overs.pending.push(Pending { moves, due: time + settling, event });
+}
+
+/// Changes of leader by these edges do not take hold; where the scene asks for one, that is told.
+fn overtake(run: &mut Simulation, edges: &[usize]) {
+    let mut told = vec![];
     for pending in &mut run.events.hand_overs.pending {
-        pending.moves.retain(|step| !moved.contains(&step.edge));
+        let event = pending.event.filter(|event| run.events.plan.events[*event].action.is_follow());
+        pending.moves.retain(|step| {
+            let stays = !edges.contains(&step.edge);
+            if !stays && event.is_some() {
+                let follower = run.formation.edges()[step.edge].follower;
+                let wanted = EventRecord::done(EventKind::Follow, follower, Some(step.leader));
+                told.push(EventRecord { refusal: Refusal::Overtaken, event, ..wanted });
+            }
+            stays
+        });
     }
-    run.events.hand_overs.pending.push(Pending { moves, due: time + settling });
+    for event in told {
+        run.events.tell(event);
+    }
 }
 
 fn settling_time(observer: &Observer) -> f64 {
@@ -126,17 +152,23 @@ pub(super) fn complete(run: &mut Simulation, time: f64) {
     let (ready, pending): (Vec<_>, Vec<_>) = all.into_iter().partition(due);
     run.events.hand_overs.pending = pending;
     for pending in ready {
-        take_hold(run, pending.moves);
+        take_hold(run, pending);
     }
 }
 
-fn take_hold(run: &mut Simulation, moves: Vec<Move>) {
-    // Somebody may have failed in the meantime.
-    let able = |run: &Simulation, step: &Move| {
-        let fails = |robot: usize| matches!(run.events.duties[robot], Duty::Failed { .. } | Duty::Stays);
-        !fails(run.formation.edges()[step.edge].follower) && !fails(step.leader)
+fn take_hold(run: &mut Simulation, Pending { moves, event, .. }: Pending) {
+    let told = |run: &Simulation, step: &Move, refusal| {
+        let robot = run.formation.edges()[step.edge].follower;
+        let done = EventRecord::done(kind(run, robot, step.leader), robot, Some(step.leader));
+        EventRecord { refusal, event, ..done }
     };
-    let moves: Vec<Move> = moves.into_iter().filter(|step| able(run, step)).collect();
+    // Somebody may have failed in the meantime: of those who fail themselves nothing is pending any more.
+    let fails = |robot: usize| matches!(run.events.duties[robot], Duty::Failed { .. } | Duty::Stays);
+    let (moves, vain): (Vec<_>, Vec<_>) = moves.into_iter().partition(|step| !fails(step.leader));
+    for step in vain {
+        let refused = told(run, &step, Refusal::Leaderless);
+        run.events.tell(refused);
+    }
     let place = |step: &Move| {
         step.place.clone().unwrap_or_else(|| {
             let (now, _) = relative(run, step);
@@ -144,16 +176,14 @@ fn take_hold(run: &mut Simulation, moves: Vec<Move>) {
         })
     };
     let changes: Vec<_> = moves.iter().map(|step| (step.edge, Some((step.leader, place(step))))).collect();
-    let told = |run: &Simulation, step: &Move, refusal| {
-        let robot = run.formation.edges()[step.edge].follower;
-        EventRecord { refusal, ..EventRecord::done(EventKind::Follow, robot, Some(step.leader)) }
-    };
+    let done: Vec<_> = moves.iter().map(|step| told(run, step, Refusal::None)).collect();
     if !run.formation.rewire(&changes) {
-        let refused: Vec<_> = moves.iter().map(|step| told(run, step, Refusal::Cycle)).collect();
-        run.events.told.extend(refused);
+        for done in done {
+            run.events.tell(EventRecord { refusal: Refusal::Cycle, ..done });
+        }
         return;
     }
-    for step in &moves {
+    for (step, done) in moves.iter().zip(done) {
         let robot = run.formation.edges()[step.edge].follower;
         if run.formation.leads().iter().any(|(lead, _)| *lead == robot) {
             run.plant.world_mut().release(robot);
@@ -169,7 +199,6 @@ fn take_hold(run: &mut Simulation, moves: Vec<Move>) {
         if let Some(sensing) = &mut run.sensing {
             sensing.change_leader(step.edge, step.leader, now);
         }
-        let done = told(run, step, Refusal::None);
         run.events.tell(done);
     }
 }
@@ -182,6 +211,7 @@ pub(super) fn lead(run: &mut Simulation, robot: usize, motion: Arc<dyn Trajector
         return;
     }
     set_alone(run, robot, motion.clone());
+    let_stand(run, robot);
     let now = run.plant.world().snapshot().robots[robot].motion;
     let limits = *run.formation.limits(robot);
     run.chases.begin(robot, &now, limits, &run.fleet.robots[robot], motion, time);
@@ -189,12 +219,23 @@ pub(super) fn lead(run: &mut Simulation, robot: usize, motion: Arc<dyn Trajector
     run.events.tell(done);
 }
 
+/// A robot has no least speed from now on: it stops where its motion does.
+pub(super) fn let_stand(run: &mut Simulation, robot: usize) {
+    run.events.may_stand[robot] = true;
+    let limits = Limits { speed_min: 0.0, ..*run.formation.limits(robot) };
+    run.formation.set_limits(robot, limits);
+    run.handling[robot].limits = limits;
+    run.plant.world_mut().apply_parameters(&run.handling);
+}
+
 /// A robot follows nobody from now on; those who follow it take `motion` for its own.
 pub(super) fn set_alone(run: &mut Simulation, robot: usize, motion: Arc<dyn Trajectory>) {
     if let Some(edge) = run.formation.graph().edge_of(robot) {
         // An edge less makes no ring.
         let _ = run.formation.rewire(&[(edge, None)]);
-        run.events.hand_overs.pending.iter_mut().for_each(|p| p.moves.retain(|step| step.edge != edge));
+    }
+    if let Some(edge) = run.formation.graph().slot_of(robot) {
+        overtake(run, &[edge]);
     }
     run.plant.world_mut().release(robot);
     run.chases.end(robot);

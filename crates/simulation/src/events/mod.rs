@@ -74,6 +74,13 @@ pub enum EventAction {
     },
 }
 
+impl EventAction {
+    /// Whether it is that a robot follows another.
+    pub(crate) fn is_follow(&self) -> bool {
+        matches!(self, Self::Follow { .. })
+    }
+}
+
 /// How robots change their leader, and what is asked of the new one.
 #[derive(Debug, Clone, Copy)]
 pub struct HandOverRules {
@@ -125,9 +132,13 @@ pub(crate) struct Events {
     /// Since when the trigger of each event holds, and whether it has happened.
     watches: Vec<trigger::Watch>,
     duties: Vec<Duty>,
+    /// Whether each robot has stood or led since the start, and has no least speed.
+    may_stand: Vec<bool>,
     /// Since when each robot has been held up, s.
     held_up: Vec<Option<f64>>,
     hand_overs: HandOvers,
+    /// Which event of the plan happens now.
+    current: Option<usize>,
     /// What happened at this sample.
     told: Vec<EventRecord>,
 }
@@ -138,8 +149,10 @@ impl Events {
             watches: vec![trigger::Watch::default(); plan.events.len()],
             plan,
             duties: vec![Duty::Drives; robots],
+            may_stand: vec![false; robots],
             held_up: vec![None; robots],
             hand_overs: HandOvers::default(),
+            current: None,
             told: vec![],
         }
     }
@@ -162,6 +175,7 @@ impl Events {
 
     /// Notes what happened at this sample; what is known already is not said again.
     fn tell(&mut self, event: EventRecord) {
+        let event = EventRecord { event: event.event.or(self.current), ..event };
         if !self.told.contains(&event) {
             self.told.push(event);
         }
@@ -170,6 +184,11 @@ impl Events {
     /// Whether a robot leads or follows.
     pub(crate) fn drives(&self, robot: usize) -> bool {
         matches!(self.duties[robot], Duty::Drives)
+    }
+
+    /// Whether a robot has no least speed by what happened.
+    pub(crate) fn may_stand(&self, robot: usize) -> bool {
+        self.may_stand[robot]
     }
 
     /// The command of a robot that has failed or waits, and whether it is still its own master: then its filter may move it.
@@ -213,7 +232,9 @@ pub(crate) fn happen(run: &mut Simulation, time: f64) {
     let plan = run.events.plan.clone();
     for (index, event) in plan.events.iter().enumerate() {
         if trigger::fires(run, index, &event.trigger, time) {
+            run.events.current = Some(index);
             start(run, &event.action, time);
+            run.events.current = None;
         }
     }
     failure::retry(run, time);
