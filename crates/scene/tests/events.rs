@@ -1,21 +1,12 @@
 //! Events: what they say, and what cannot be.
 
+mod common;
+
+use common::START;
 use scene::{Event, Failure, Happening, Holds, Override, Recovery, Scene, Trigger};
 
-const START: &str = r#"
-schema = 1
-title = "t"
-[[robots]]
-name = "ann"
-pose = [0.0, 0.0, 0.0]
-path = { kind = "constant" }
-[[robots]]
-name = "bob"
-pose = [-2.0, -1.0, 0.0]
-leader = "ann"
-distance = 2.0
-bearing = "-135 deg"
-[[robots]]
+/// On top of the two that all tests have: one that follows in a chain, and one that leads on its own.
+const MORE: &str = r#"[[robots]]
 name = "cy"
 pose = [-4.0, -2.0, 0.0]
 leader = "bob"
@@ -28,17 +19,11 @@ path = { kind = "constant" }
 "#;
 
 fn load(events: &str) -> Scene {
-    let text = format!("{START}{events}");
-    let scene = Scene::parse(&text, "t.toml", &[]).unwrap_or_else(|fault| panic!("{fault}")).scene;
-    let written = scene.to_toml();
-    let again = Scene::parse(&written, "t.toml", &[]).unwrap_or_else(|fault| panic!("{fault}\n{written}"));
-    assert_eq!(scene, again.scene, "{written}");
-    scene
+    common::load(&format!("{START}{MORE}{events}"))
 }
 
 fn fault(events: &str) -> String {
-    let text = format!("{START}{events}");
-    Scene::parse(&text, "t.toml", &[]).err().map_or_else(String::new, |fault| fault.to_string())
+    common::fault(&format!("{START}{MORE}{events}"))
 }
 
 #[test]
@@ -154,7 +139,7 @@ fn events_may_come_on_top_while_a_run_goes_but_not_others() {
     assert_eq!(before.sets_to(&after), Ok(vec![]));
     assert!(after.sets_to(&before).is_err(), "what was to happen does not go");
     let set: Override = "events.0.at=4".parse().expect("an override");
-    let text = format!("{START}{first}");
+    let text = format!("{START}{MORE}{first}");
     let changed = Scene::parse(&text, "t.toml", &[set]).expect("a scene").scene;
     assert_eq!(changed.events[0].trigger, Trigger::At { at: 4.0 });
     assert!(before.sets_to(&changed).is_err());

@@ -1,33 +1,9 @@
 //! Followers that file in: who does, and what that needs.
 
+mod common;
+
+use common::{START, fault, load};
 use scene::{Narrowing, Override, Scene};
-
-const START: &str = r#"
-schema = 1
-title = "t"
-[[robots]]
-name = "ann"
-pose = [0.0, 0.0, 0.0]
-path = { kind = "constant" }
-[[robots]]
-name = "bob"
-pose = [-2.0, -1.0, 0.0]
-leader = "ann"
-distance = 2.0
-bearing = "-135 deg"
-"#;
-
-fn load(text: &str) -> Scene {
-    let scene = Scene::parse(text, "t.toml", &[]).unwrap_or_else(|fault| panic!("{fault}")).scene;
-    let written = scene.to_toml();
-    let again = Scene::parse(&written, "t.toml", &[]).unwrap_or_else(|fault| panic!("{fault}\n{written}"));
-    assert_eq!(scene, again.scene, "{written}");
-    scene
-}
-
-fn fault(text: &str) -> String {
-    Scene::parse(text, "t.toml", &[]).expect_err("a fault").to_string()
-}
 
 fn rule(scene: &Scene, robot: usize) -> Narrowing {
     scene.robots[robot].role.follow().expect("a follower").narrowing

@@ -7,6 +7,7 @@ use super::trigger::BLOCKED;
 use super::{Duty, assignment, check::refused};
 use crate::simulation::Simulation;
 use formation::SetPointTrajectory;
+use formation::column::cartesian;
 use formation::lead::AnalyticTrajectory;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -300,11 +301,6 @@ fn stand(run: &mut Simulation, robot: usize) {
 /// Where the follower of an edge is to be, [forward, left] of its leader in m.
 pub(super) fn place_of(run: &Simulation, edge: usize, time: f64) -> [f64; 2] {
     cartesian(run.formation.laws()[edge].set_point.at(time).value)
-}
-
-fn cartesian([distance, bearing]: [f64; 2]) -> [f64; 2] {
-    let (sin, cos) = math::sin_cos(bearing);
-    [distance * cos, distance * sin]
 }
 
 /// [distance, bearing] of a place, m and rad.
