@@ -32,12 +32,13 @@ fn dependencies(all_kinds: bool) -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 19] = [
+const ARROWS: [(&str, &[&str]); 20] = [
     ("vocabulary", &[]),
     ("output", &[]),
     ("film", &["vocabulary", "output"]),
-    ("scene", &["vocabulary"]),
-    ("formation", &["vocabulary"]),
+    ("laws", &["vocabulary"]),
+    ("scene", &["vocabulary", "laws"]),
+    ("formation", &["vocabulary", "laws"]),
     ("safety", &["vocabulary"]),
     ("world", &["vocabulary"]),
     ("perception", &["vocabulary"]),
@@ -46,7 +47,7 @@ const ARROWS: [(&str, &[&str]); 19] = [
     // Its tests, examples and benches write pictures and films with `film`.
     ("rendering", &["vocabulary", "film"]),
     ("figures", &["vocabulary"]),
-    ("simulation", &["vocabulary", "scene", "formation", "safety", "world", "perception"]),
+    ("simulation", &["vocabulary", "laws", "scene", "formation", "safety", "world", "perception"]),
     ("digests", &["vocabulary", "metrics", "scene", "simulation"]),
     (
         "studies",

@@ -1,0 +1,17 @@
+//! Control laws that users write.
+//!
+//! A custom law comes with a [`Declaration`]: its parameters with units and ranges, its memory, how many leaders it looks at
+//! and what it has to know of them. It is told an [`Input`] and decides a [`vocabulary::Command`], dv/dt and ω. It has no
+//! clock, no files, no other robots, and no randomness but [`Noise`], so a run replays bit for bit.
+
+mod custom_law;
+mod declaration;
+mod input;
+mod noise;
+mod unit;
+
+pub use custom_law::{CustomLaw, Fault, Place};
+pub use declaration::{Declaration, Knowledge, Parameter, Quantity, Scale};
+pub use input::{INPUTS, Input, InputKind, LEADERS_MAX, LeaderInput};
+pub use noise::Noise;
+pub use unit::Unit;
