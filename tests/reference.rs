@@ -124,6 +124,7 @@ impl Case {
                 distance_min,
                 heading: Heading::Leader,
             },
+            custom: None,
             observer: Observer {
                 epsilon: [c.epsilon; 2],
                 alpha1: [c.alpha1; 2],
@@ -132,6 +133,7 @@ impl Case {
             },
             tracker: None,
             set_point: SetPointTrajectory::constant(0.0, 0.0),
+            free: [false; 2],
             standing: false,
             narrowing: None,
         })

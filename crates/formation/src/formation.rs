@@ -1,16 +1,19 @@
 //! All edges of a formation together: from what every follower sees to what every robot shall do.
 
 use crate::column::{cartesian, column};
+use crate::custom::{Custom, CustomState};
 use crate::graph::Graph;
 use crate::hand_over::HandOver;
 use crate::law::{Law, LawInput};
 use crate::memory::EdgeMemory;
 use crate::narrowing::{Narrowing, Outlook};
 use crate::observer::{Estimate, Observer};
+use crate::path_heading::Heading;
 use crate::relative::Geometry;
 use crate::set_point::SetPointTrajectory;
 use crate::standing::StandingInput;
 use crate::tracker::TrackerParameters;
+use laws::{Input, Knowledge, LeaderInput, Noise};
 use std::sync::Arc;
 use vocabulary::{
     Command, Edge, Limits, MotionInput, MotionPhase, Observation, Relative, SetPoint, TrackingState,
@@ -20,14 +23,18 @@ use vocabulary::{
 /// Parameters of one edge.
 #[derive(Debug, Clone)]
 pub struct EdgeLaw {
-    /// The law of the follower.
+    /// The law of the follower. Where `custom` takes its place, what counts is its least distance and its heading.
     pub law: Law,
-    /// Its observer; used by output feedback.
+    /// The custom law of the follower. With several leaders it is that of its first edge.
+    pub custom: Option<Custom>,
+    /// Its observer; used where the law knows distance and bearing only.
     pub observer: Observer,
     /// How it makes an estimate from measurements; `None` where it is told the truth.
     pub tracker: Option<TrackerParameters>,
     /// Where it shall be.
     pub set_point: SetPointTrajectory,
+    /// Whether [distance, bearing] are left free: nothing is wanted of them, and the set point's are not looked at.
+    pub free: [bool; 2],
     /// Whether it stops with its leader and starts again; it then holds its bearing against a path's heading. Without, it
     /// never drives slower than its least speed.
     pub standing: bool,
@@ -45,9 +52,12 @@ pub struct Formation {
     limits: Vec<Limits>,
     leads: Vec<(usize, Arc<dyn Trajectory>)>,
     period: f64,
+    seed: u64,
+    /// Whether law and plant are one differential equation: memories of custom laws then do not change at samples.
+    continuous: bool,
 }
 
-/// What a law decided on one edge.
+/// What a law decided on one edge. What it decided for its follower stands on each of the follower's edges.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Decision {
     /// s^d at this instant, [m, rad]: the bearing against the leader's own heading, whatever the law holds it against.
@@ -86,6 +96,8 @@ pub struct FormationState {
     pub decisions: Vec<Decision>,
     /// Per edge.
     pub memories: Vec<EdgeMemory>,
+    /// What custom laws carry, per edge; of a follower with several leaders on its first edge.
+    pub customs: Vec<CustomState>,
     /// Per robot: what it is told; for a lead robot its prescribed motion.
     pub commands: Vec<Command>,
     drives: Vec<MotionInput>,
@@ -105,9 +117,21 @@ impl Formation {
     ) -> Self {
         debug_assert_eq!((edges.len(), limits.len()), (graph.edges().len(), graph.robots()));
         let written = edges.iter().map(|edge| edge.set_point.clone()).collect();
-        let mut formation = Self { graph, edges, written, limits, leads, period };
+        let mut formation = Self { graph, edges, written, limits, leads, period, seed: 0, continuous: false };
         formation.file();
         formation
+    }
+
+    /// Draws the random numbers of custom laws by this seed.
+    #[must_use]
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
+    /// Lets memories of custom laws change between samples alone, see [`Formation::evaluate`].
+    #[must_use]
+    pub fn in_continuous_time(self, continuous: bool) -> Self {
+        Self { continuous, ..self }
     }
 
     /// Goes on with other laws and limits, as many as before. The set point of an edge that has changed its leader stays,
@@ -201,6 +225,7 @@ impl Formation {
             estimates,
             decisions: vec![Decision::default(); self.edges.len()],
             memories: vec![EdgeMemory::default(); self.edges.len()],
+            customs: vec![CustomState::default(); self.edges.len()],
             commands: vec![Command::default(); robots],
             drives: vec![MotionInput::default(); robots],
             turn_rates: [None, None],
@@ -223,7 +248,8 @@ impl Formation {
     ) {
         self.remember(time, observations, state);
         state.differentiate_turn_rates(self.period);
-        self.evaluate_through(time, observations, state, filter);
+        let mut rates = self.continuous.then(|| vec![vec![]; self.edges.len()]);
+        self.evaluate_through(time, observations, state, filter, rates.as_deref_mut());
         state.remember_turn_rates();
     }
 
@@ -234,13 +260,14 @@ impl Formation {
             // Whoever comes into sight again is met anew.
             if unseen(seen) {
                 memory.forget();
+                state.customs[index].forget();
                 continue;
             }
             let rates = || {
                 let geometry = Geometry::new(&seen.relative, edge.law.distance_min);
                 let leader =
                     MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..MotionInput::default() };
-                edge.law.rates_of(&state.estimates[index], || {
+                edge.rates_of(&state.estimates[index], || {
                     edge.law.rates(&geometry, seen.own_speed, &leader).into()
                 })
             };
@@ -266,9 +293,16 @@ impl Formation {
         }
     }
 
-    /// Evaluates all laws at an instant, leaders before followers, without memory: for continuous time.
-    pub fn evaluate(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
-        self.evaluate_through(time, observations, state, &mut |_, command| command);
+    /// Evaluates all laws at an instant of continuous time, leaders before followers. Memories stay; those of custom laws have
+    /// the time derivatives `rates`, per edge.
+    pub fn evaluate(
+        &self,
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        rates: &mut [Vec<f64>],
+    ) {
+        self.evaluate_through(time, observations, state, &mut |_, command| command, Some(rates));
     }
 
     fn evaluate_through(
@@ -277,6 +311,7 @@ impl Formation {
         observations: &[Observation],
         state: &mut FormationState,
         filter: &mut dyn FnMut(usize, Command) -> Command,
+        mut rates: Option<&mut [Vec<f64>]>,
     ) {
         for (robot, trajectory) in &self.leads {
             let mut drive = trajectory.at(time);
@@ -292,51 +327,68 @@ impl Formation {
         }
         for &index in self.graph.evaluation_order() {
             let follower = self.edges()[index].follower;
-            let mut decision = self.decide_edge(index, time, &observations[index], state);
-            let told = filter(follower, decision.commanded);
-            if told != decision.commanded {
-                decision.divert(told, observations[index].own_speed, &self.limits[follower]);
+            let own = self.graph.edges_of(follower);
+            // A follower with several leaders decides once.
+            if own[0] != index {
+                continue;
             }
+            let rates = rates.as_mut().map(|all| &mut all[index]);
+            self.decide_follower(own, time, observations, state, rates);
+            let commanded = state.decisions[index].commanded;
+            let (told, own_speed) = (filter(follower, commanded), observations[index].own_speed);
+            if told != commanded {
+                for edge in own {
+                    state.decisions[*edge].divert(told, own_speed, &self.limits[follower]);
+                }
+            }
+            let applied = state.decisions[index].applied;
             let drive = &mut state.drives[follower];
-            drive.speed = observations[index].own_speed;
-            drive.acceleration = decision.applied.acceleration;
-            drive.turn_rate = decision.applied.turn_rate;
-            state.commands[follower] = decision.commanded;
-            state.decisions[index] = decision;
+            drive.speed = own_speed;
+            drive.acceleration = applied.acceleration;
+            drive.turn_rate = applied.turn_rate;
+            state.commands[follower] = told;
         }
     }
 
-    fn decide_edge(
+    /// Decides the command of the follower whose edges are `own`. `rates` become those of a custom law's memory, in
+    /// continuous time.
+    fn decide_follower(
         &self,
-        index: usize,
+        own: &[usize],
         time: f64,
-        seen: &Observation,
+        observations: &[Observation],
         state: &mut FormationState,
-    ) -> Decision {
-        let (edge, parameters) = (self.edges()[index], &self.edges[index]);
-        let limits = &self.limits[edge.follower];
-        if unseen(seen) {
-            return without_leader(&parameters.set_point.at(time), seen, limits);
+        rates: Option<&mut Vec<f64>>,
+    ) {
+        let first = own[0];
+        let limits = &self.limits[self.edges()[first].follower];
+        if let Some(blind) = own.iter().map(|edge| &observations[*edge]).find(|seen| unseen(seen)) {
+            let told = without_leader(blind.sight == TrackingState::Lost, blind.own_speed, limits);
+            for edge in own {
+                let set_point = self.edges[*edge].set_point.at(time);
+                state.decisions[*edge] = Decision::of(told, &set_point, blind.own_speed, limits);
+            }
+            return;
         }
-        // What the leader does within this sample it tells its follower; its speed the follower has to observe.
-        let leader = MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..state.drives[edge.leader] };
-        let (law, memory) = (&parameters.law, &mut state.memories[index]);
-        let geometry = Geometry::new(&seen.relative, law.distance_min);
-        let place = parameters.place(memory, time);
-        let set_point = parameters.output_set_point(memory, &place);
-        let slowest = if parameters.standing { DIVIDES_BY } else { limits.speed_min };
-        let own_speed = seen.own_speed.max(slowest);
-        let rates = law.rates_of(&state.estimates[index], || law.rates(&geometry, own_speed, &leader).into());
-        let mut asked = law.command(&LawInput {
-            geometry: &geometry,
-            error: tracking_error(&set_point, &law.heading.output(&seen.relative, seen.own_heading)),
-            set_point: &set_point,
-            rates,
-            own_speed,
-            leader: &leader,
-        });
+        let view = |edge: &usize| self.view(*edge, time, &observations[*edge], state);
+        let (alone, several);
+        let views = if let [edge] = own {
+            alone = view(edge);
+            std::slice::from_ref(&alone)
+        } else {
+            several = own.iter().map(view).collect::<Vec<_>>();
+            &several
+        };
+        let (parameters, seen) = (&self.edges[first], &observations[first]);
+        let asked = match &parameters.custom {
+            None => Some(parameters.law.command(&views[0].law_input())),
+            Some(custom) => self.ask(custom, first, time, views, state, rates),
+        };
+        // A law that has broken off leaves its follower as if it had lost its leader.
+        let mut asked = asked.unwrap_or_else(|| without_leader(true, seen.own_speed, limits));
         let mut phase = MotionPhase::Law;
-        if let Some(input) = parameters.standing_input(memory, &place, seen) {
+        let memory = &mut state.memories[first];
+        if let Some(input) = parameters.standing_input(memory, &views[0].place, seen) {
             let leader = [memory.speed_now(), memory.acceleration];
             let input = StandingInput { leader, ..input };
             (asked, phase) = memory.standing.command(asked, &input);
@@ -344,17 +396,139 @@ impl Formation {
         if let Some(hand_over) = &mut memory.hand_over {
             asked = hand_over.command(asked);
         }
-        let too_close = seen.relative.distance < law.distance_min;
-        let mut decision = Decision::of(asked, &set_point, seen.own_speed, limits);
+        for (edge, view) in own.iter().zip(views) {
+            let seen = &observations[*edge];
+            let decision = Decision::of(asked, &view.set_point, seen.own_speed, limits);
+            state.decisions[*edge] =
+                Decision { phase, ..self.on_edge(*edge, time, view, seen, &state.memories[*edge], decision) };
+        }
+    }
+
+    /// What the law of a follower looks at on one of its edges.
+    fn view(&self, index: usize, time: f64, seen: &Observation, state: &FormationState) -> EdgeView {
+        let (edge, parameters) = (self.edges()[index], &self.edges[index]);
+        // What the leader does within this sample it tells its follower; its speed the follower has to observe.
+        let leader = MotionInput { speed: seen.leader_speed.unwrap_or(0.0), ..state.drives[edge.leader] };
+        let (law, memory) = (&parameters.law, &state.memories[index]);
+        let geometry = Geometry::new(&seen.relative, law.distance_min);
+        let output = law.heading.output(&seen.relative, seen.own_heading);
+        let place = parameters.place(memory, time);
+        let mut set_point = parameters.output_set_point(memory, &place);
+        for (k, at) in [output.distance, output.bearing].into_iter().enumerate() {
+            if parameters.free[k] {
+                (set_point.value[k], set_point.rate[k], set_point.acceleration[k]) = (at, 0.0, 0.0);
+            }
+        }
+        let slowest = if parameters.standing { DIVIDES_BY } else { self.limits[edge.follower].speed_min };
+        let own_speed = seen.own_speed.max(slowest);
+        let truth = || law.rates(&geometry, own_speed, &leader).into();
+        let rates = parameters.rates_of(&state.estimates[index], truth);
+        EdgeView { geometry, output, place, set_point, rates, own_speed, leader }
+    }
+
+    /// The command that a custom law asks for on the edges of its follower; `None` where it has broken off.
+    fn ask(
+        &self,
+        custom: &Custom,
+        first: usize,
+        time: f64,
+        views: &[EdgeView],
+        state: &mut FormationState,
+        rates: Option<&mut Vec<f64>>,
+    ) -> Option<Command> {
+        let law = &self.edges[first].law;
+        let (alone, several);
+        let leaders = if let [view] = views {
+            alone = view.leader_input(law);
+            std::slice::from_ref(&alone)
+        } else {
+            several = views.iter().map(|view| view.leader_input(law)).collect::<Vec<_>>();
+            &several
+        };
+        let follower = self.edges()[first].follower;
+        let last = state.decisions[first].applied;
+        let input = Input {
+            time,
+            period: self.period,
+            own_speed: views[0].own_speed,
+            own_acceleration: last.acceleration,
+            own_turn_rate: last.turn_rate,
+            leaders,
+            noise: Noise {
+                seed: self.seed,
+                robot: follower as u64,
+                sample: (time / self.period).round() as u64,
+            },
+        };
+        let law = &mut state.customs[first];
+        match rates {
+            None => law.decide(custom, &input),
+            Some(rates) => law.derive(custom, &input, rates),
+        }
+    }
+
+    /// A decision with what belongs to one edge.
+    fn on_edge(
+        &self,
+        index: usize,
+        time: f64,
+        view: &EdgeView,
+        seen: &Observation,
+        memory: &EdgeMemory,
+        mut decision: Decision,
+    ) -> Decision {
+        let parameters = &self.edges[index];
         if let Some(heading) = memory.heading {
             decision.behind = heading.behind;
-            decision.set_point[1] = wrap(place.value[1] - heading.behind);
+            decision.set_point[1] = wrap(view.place.value[1] - heading.behind);
         }
         let narrowing = parameters.narrowing.as_ref();
         let narrowing =
             narrowing.map_or(0.0, |rule| memory.narrowing.share(rule, &parameters.set_point.at(time)));
+        let too_close = seen.relative.distance < parameters.law.distance_min;
         let displacement = memory.displacement();
-        Decision { rates, too_close, phase, displacement, narrowing, ..decision }
+        Decision { rates: view.rates, too_close, displacement, narrowing, ..decision }
+    }
+}
+
+/// What the law of a follower looks at on one edge.
+struct EdgeView {
+    geometry: Geometry,
+    /// What the law works on.
+    output: Relative,
+    /// s^d against the heading it is held against.
+    place: SetPoint,
+    /// s^d of what the law works on.
+    set_point: SetPoint,
+    /// Rates of what the law works on, as the follower knows them.
+    rates: [f64; 2],
+    own_speed: f64,
+    leader: MotionInput,
+}
+
+impl EdgeView {
+    fn law_input(&self) -> LawInput<'_> {
+        LawInput {
+            geometry: &self.geometry,
+            error: tracking_error(&self.set_point, &self.output),
+            set_point: &self.set_point,
+            rates: self.rates,
+            own_speed: self.own_speed,
+            leader: &self.leader,
+        }
+    }
+
+    fn leader_input(&self, law: &Law) -> LeaderInput {
+        LeaderInput {
+            relative: Relative { distance: self.geometry.distance, ..self.output },
+            rates: self.rates,
+            wanted: self.set_point,
+            motion: self.leader,
+            frame: match law.heading {
+                Heading::Leader => [self.leader.turn_rate, self.leader.turn_acceleration],
+                Heading::Path(_) => [0.0; 2],
+            },
+        }
     }
 }
 
@@ -383,6 +557,21 @@ impl Formation {
 const DIVIDES_BY: f64 = 0.01;
 
 impl EdgeLaw {
+    /// What the follower's law has to know of its leader.
+    pub fn knows(&self) -> Knowledge {
+        self.custom.as_ref().map_or(self.law.knows(), |custom| custom.law.declaration().knows)
+    }
+
+    /// Whether the follower's law takes the rates of distance and bearing from its observer.
+    pub fn observes(&self) -> bool {
+        self.knows() == Knowledge::Output
+    }
+
+    /// ds/dt as the law takes it: the observer's `estimate`, or the truth for a law that is told it.
+    fn rates_of(&self, estimate: &Estimate, truth: impl FnOnce() -> [f64; 2]) -> [f64; 2] {
+        if self.observes() { estimate.rates } else { truth() }
+    }
+
     /// s^d where the follower has filed in, as far as it has.
     fn narrowed(&self, memory: &EdgeMemory, time: f64) -> SetPoint {
         memory.narrowing.moves(&self.set_point.at(time), self.law.distance_min)
@@ -517,15 +706,11 @@ impl Decision {
     }
 }
 
-/// What a follower does that has not seen its leader yet: it goes straight on; and one that has lost it brakes to its
+/// What a follower asks for that has not seen its leader yet: it goes straight on; one that has `lost` it brakes to its
 /// slowest speed besides.
-fn without_leader(set_point: &SetPoint, seen: &Observation, limits: &Limits) -> Decision {
-    let braking = (limits.speed_min - seen.own_speed) / BRAKING;
-    let asked = Command {
-        acceleration: if seen.sight == TrackingState::Lost { braking } else { 0.0 },
-        turn_rate: 0.0,
-    };
-    Decision::of(asked, set_point, seen.own_speed, limits)
+fn without_leader(lost: bool, own_speed: f64, limits: &Limits) -> Command {
+    let braking = (limits.speed_min - own_speed) / BRAKING;
+    Command { acceleration: if lost { braking } else { 0.0 }, turn_rate: 0.0 }
 }
 
 /// Time constant with which a follower brakes that has lost its leader, s.
@@ -541,6 +726,7 @@ impl FormationState {
     /// believes `estimate`.
     pub fn change_leader(&mut self, index: usize, law: &Law, estimate: Estimate, hand_over: HandOver) {
         self.estimates[index] = estimate;
+        self.customs[index].forget();
         let turn_rate = hand_over.last().turn_rate;
         self.memories[index].change_leader(law, hand_over, turn_rate);
     }
@@ -566,7 +752,7 @@ mod tests {
     use super::*;
     use crate::law::Switching;
     use crate::lead::AnalyticTrajectory;
-    use crate::path_heading::Heading;
+    use laws::{CustomLaw, Declaration, Fault, Parameter, Quantity, Scale, Unit};
     use vocabulary::LawKind;
 
     fn chain(kind: LawKind) -> Formation {
@@ -582,9 +768,11 @@ mod tests {
         let observer = Observer { epsilon: [1e-3; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
         let edge = EdgeLaw {
             law,
+            custom: None,
             observer,
             tracker: None,
             set_point: SetPointTrajectory::constant(2.0, -2.3),
+            free: [false; 2],
             standing: false,
             narrowing: None,
         };
@@ -659,5 +847,150 @@ mod tests {
         assert_eq!(state.decisions[0].rates, [100.0, -50.0]);
         assert!(state.decisions[0].limited && state.decisions[0].too_close);
         assert!(state.commands[1].turn_rate.abs() <= 11.5);
+    }
+
+    /// A law in Rust: it asks for the sum of its leaders' distances and for what it has counted, and breaks off where it
+    /// counts beyond a bound.
+    #[derive(Debug)]
+    struct Counting(Declaration);
+
+    impl Counting {
+        fn new(leaders: usize) -> Arc<Self> {
+            let quantity = |name: &str| Quantity { name: name.to_owned(), unit: Unit::NUMBER };
+            let parameter = Parameter {
+                name: "bound".to_owned(),
+                symbol: "b".to_owned(),
+                unit: Unit::NUMBER,
+                default: 3.0,
+                range: [0.0, 10.0],
+                scale: Scale::Linear,
+                help: String::new(),
+            };
+            Arc::new(Self(Declaration {
+                leaders,
+                knows: Knowledge::Motion,
+                parameters: vec![parameter],
+                memory: vec![quantity("count")],
+                shown: vec![quantity("sample")],
+                ..Declaration::default()
+            }))
+        }
+    }
+
+    impl CustomLaw for Counting {
+        fn declaration(&self) -> &Declaration {
+            &self.0
+        }
+
+        fn start(&self, _: &Input<'_>, _: &[f64], memory: &mut [f64]) -> Result<(), Fault> {
+            memory[0] = 1.0;
+            Ok(())
+        }
+
+        fn decide(
+            &self,
+            input: &Input<'_>,
+            parameters: &[f64],
+            memory: &mut [f64],
+            shown: &mut [f64],
+        ) -> Result<Command, Fault> {
+            shown[0] = input.noise.sample as f64;
+            memory[0] += 1.0;
+            if memory[0] > parameters[0] {
+                return Err(Fault { place: None, message: "it has counted too far".to_owned() });
+            }
+            let acceleration = input.leaders.iter().map(|leader| leader.relative.distance).sum();
+            Ok(Command { acceleration, turn_rate: memory[0] })
+        }
+
+        fn derive(
+            &self,
+            input: &Input<'_>,
+            parameters: &[f64],
+            memory: &[f64],
+            rates: &mut [f64],
+        ) -> Result<Command, Fault> {
+            rates[0] = 1.0;
+            self.decide(input, parameters, &mut memory.to_vec(), &mut [0.0])
+        }
+    }
+
+    /// c keeps its place by `leaders` with a counting law; the others do as always.
+    fn counting(leaders: &[&str]) -> Formation {
+        let mut formation = chain(LawKind::FullState);
+        let pairs: Vec<_> =
+            [("a", "b")].into_iter().chain(leaders.iter().map(|leader| (*leader, "c"))).collect();
+        formation.graph = Graph::new(&["a", "b", "c"], &pairs).expect("a graph");
+        let edge = formation.edges[1].clone();
+        let custom = Some(Custom { law: Counting::new(leaders.len()), parameters: vec![3.0] });
+        formation.edges.truncate(1);
+        formation.edges.extend(leaders.iter().map(|_| EdgeLaw { custom: custom.clone(), ..edge.clone() }));
+        formation.edges[leaders.len()].free = [false, true];
+        formation.written = formation.edges.iter().map(|edge| edge.set_point.clone()).collect();
+        formation
+    }
+
+    #[test]
+    fn a_custom_law_decides_once_for_all_its_leaders_and_carries_its_memory() {
+        let formation = counting(&["a", "b"]);
+        let mut state = formation.start(vec![Estimate::default(); 3]);
+        let seen = [observation(2.0), observation(0.25), observation(0.5)];
+        for k in 0..2 {
+            formation.decide(f64::from(k) * 0.01, &seen, &mut state);
+        }
+        let asked = Command { acceleration: 0.75, turn_rate: 3.0 };
+        assert_eq!([1, 2].map(|edge| state.decisions[edge].asked), [asked; 2]);
+        assert_eq!(state.commands[2], asked);
+        assert_eq!((state.customs[1].memory(), state.customs[1].shown()), (&[3.0][..], &[1.0][..]));
+        // Of a set point that is left free nothing is wanted.
+        assert_eq!(state.decisions[2].set_point[1], seen[2].relative.bearing);
+        assert_ne!(state.decisions[1].set_point[1], seen[1].relative.bearing);
+    }
+
+    #[test]
+    fn a_law_that_breaks_off_leaves_its_follower_braking_until_it_is_changed() {
+        let mut formation = counting(&["b"]);
+        let mut state = formation.start(vec![Estimate::default(); 2]);
+        let mut decide = |formation: &Formation, k: u32| {
+            formation.decide(f64::from(k) * 0.01, &[observation(2.0), observation(0.5)], &mut state);
+            let law = &state.customs[1];
+            (state.commands[2], law.fault().is_some(), law.is_failed(), law.memory()[0])
+        };
+        decide(&formation, 0);
+        decide(&formation, 1);
+        let braking = Command { acceleration: (Limits::PAPER.speed_min - 1.0) / BRAKING, turn_rate: 0.0 };
+        assert_eq!(decide(&formation, 2), (braking, true, true, 3.0));
+        assert_eq!(decide(&formation, 3), (braking, false, true, 3.0));
+        // With other parameters it goes on where it was; another law with the same memory takes that over.
+        let custom = |bound| Some(Custom { law: Counting::new(1), parameters: vec![bound] });
+        let law = formation.edges[1].custom.as_mut().expect("a law");
+        law.parameters[0] = 4.0;
+        assert_eq!(decide(&formation, 4), (Command { acceleration: 0.5, turn_rate: 4.0 }, false, false, 4.0));
+        formation.edges[1].custom = custom(9.0);
+        assert_eq!(decide(&formation, 5).3, 5.0);
+    }
+
+    #[test]
+    fn a_leader_that_is_met_anew_starts_the_memory_anew() {
+        let formation = counting(&["b"]);
+        let mut state = formation.start(vec![Estimate::default(); 2]);
+        let lost = Observation { sight: TrackingState::Lost, ..observation(0.5) };
+        for seen in [observation(0.5), lost, observation(0.5)] {
+            formation.decide(0.0, &[observation(2.0), seen], &mut state);
+        }
+        assert_eq!(state.customs[1].memory(), [2.0]);
+    }
+
+    #[test]
+    fn in_continuous_time_samples_leave_the_memory_as_it_is() {
+        let formation = counting(&["b"]).in_continuous_time(true);
+        let mut state = formation.start(vec![Estimate::default(); 2]);
+        let seen = [observation(2.0), observation(0.5)];
+        for _ in 0..5 {
+            formation.decide(0.0, &seen, &mut state);
+        }
+        let mut rates = vec![vec![]; 2];
+        formation.evaluate(0.0, &seen, &mut state, &mut rates);
+        assert_eq!((state.customs[1].memory(), &rates[1][..]), (&[1.0][..], &[1.0][..]));
     }
 }

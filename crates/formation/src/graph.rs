@@ -1,7 +1,7 @@
 //! The formation control graph (definition 2.2): named robots and directed edges from leader to follower.
 
 use petgraph::Direction;
-use petgraph::algo::toposort;
+use petgraph::algo::{kosaraju_scc, toposort};
 use petgraph::graph::{DiGraph, NodeIndex};
 use std::collections::HashMap;
 use thiserror::Error;
@@ -30,28 +30,26 @@ pub enum GraphError {
     /// A robot follows itself.
     #[error("`{0}` follows itself")]
     SelfEdge(String),
-    /// A robot has two leaders.
-    #[error("`{follower}` follows both `{first}` and `{second}`: a follower has one leader")]
-    TwoLeaders {
+    /// A robot follows another one twice.
+    #[error("`{follower}` follows `{leader}` twice: its leaders must differ")]
+    Twice {
         /// The robot that follows.
         follower: String,
-        /// Its first leader.
-        first: String,
-        /// Its second leader.
-        second: String,
+        /// Its leader.
+        leader: String,
     },
     /// Followers lead one another in a ring.
     #[error("these robots follow each other in a ring: {}", .0.join(" → "))]
     Cycle(Vec<String>),
 }
 
-/// A checked formation graph: acyclic, every follower with one leader.
+/// A checked formation graph: acyclic. Most followers have one leader; some laws look at several.
 #[derive(Debug, Clone)]
 pub struct Graph {
     robots: usize,
     edges: Vec<Edge>,
-    /// The edge by which each robot follows, if it does: the other edges are not in force.
-    edge_of: Vec<Option<usize>>,
+    /// The edges by which each robot follows, in the order they were given: all others are not in force.
+    edges_of: Vec<Vec<usize>>,
     evaluation_order: Vec<usize>,
 }
 
@@ -79,12 +77,12 @@ impl Graph {
         }
         let order =
             toposort(&graph, None).map_err(|cycle| GraphError::Cycle(ring(&graph, cycle.node_id())))?;
-        let evaluation_order = order.into_iter().filter_map(|node| incoming(&graph, node)).collect();
-        let mut edge_of = vec![None; names.len()];
+        let mut edges_of = vec![vec![]; names.len()];
         for (index, edge) in edges.iter().enumerate() {
-            edge_of[edge.follower] = Some(index);
+            edges_of[edge.follower].push(index);
         }
-        Ok(Self { robots: names.len(), edges, edge_of, evaluation_order })
+        let evaluation_order = order.into_iter().flat_map(|node| edges_of[node.index()].clone()).collect();
+        Ok(Self { robots: names.len(), edges, edges_of, evaluation_order })
     }
 
     /// Adds an edge that is not in force yet, for a robot that leads now and may follow later.
@@ -92,24 +90,29 @@ impl Graph {
         self.edges.push(edge);
     }
 
-    /// The edge by which `robot` follows; `None` where it follows nobody.
+    /// The first edge by which `robot` follows; `None` where it follows nobody.
     pub fn edge_of(&self, robot: usize) -> Option<usize> {
-        self.edge_of[robot]
+        self.edges_of[robot].first().copied()
     }
 
-    /// The edge that `robot` has, whether it is in force or not.
+    /// The edges by which `robot` follows, in the order they were given.
+    pub fn edges_of(&self, robot: usize) -> &[usize] {
+        &self.edges_of[robot]
+    }
+
+    /// The first edge that `robot` has, whether it is in force or not.
     pub fn slot_of(&self, robot: usize) -> Option<usize> {
         self.edges.iter().position(|edge| edge.follower == robot)
     }
 
-    /// Whom `robot` follows.
+    /// Whom `robot` follows by its first edge.
     pub fn leader_of(&self, robot: usize) -> Option<usize> {
         Some(self.edges[self.edge_of(robot)?].leader)
     }
 
     /// Whether edge number `index` is in force.
     pub fn is_in_force(&self, index: usize) -> bool {
-        self.edge_of[self.edges[index].follower] == Some(index)
+        self.edges_of[self.edges[index].follower].contains(&index)
     }
 
     /// Whom the follower of each edge follows; `None` where it follows nobody.
@@ -120,11 +123,16 @@ impl Graph {
 
     /// Whether `robot` follows `other`, directly or through others, or is it.
     pub fn comes_after(&self, robot: usize, other: usize) -> bool {
-        let up = |robot: &usize| self.leader_of(*robot);
-        std::iter::successors(Some(robot), up).take(self.robots + 1).any(|robot| robot == other)
+        let (mut reached, mut open) = (vec![false; self.robots], vec![robot]);
+        while let Some(robot) = open.pop() {
+            if !std::mem::replace(&mut reached[robot], true) {
+                open.extend(self.edges_of[robot].iter().map(|edge| self.edges[*edge].leader));
+            }
+        }
+        reached[other]
     }
 
-    /// The robot at the head of those that `robot` follows; itself where it follows nobody.
+    /// The robot at the head of those that `robot` follows, by first edges; itself where it follows nobody.
     pub fn head_of(&self, robot: usize) -> usize {
         let up = |robot: &usize| self.leader_of(*robot);
         std::iter::successors(Some(robot), up).take(self.robots + 1).last().unwrap_or(robot)
@@ -137,25 +145,31 @@ impl Graph {
         own.map(|(_, edge)| edge.follower)
     }
 
-    /// Whom the followers of some edges follow from now on, or that they follow nobody. Changes nothing and returns false
+    /// Whom the followers of some edges follow by these from now on, or that they do not. Changes nothing and returns false
     /// where somebody would then follow himself, directly or through others.
     pub fn rewire(&mut self, changes: &[(usize, Option<usize>)]) -> bool {
         let mut next = self.clone();
         for (index, leader) in changes {
             let edge = &mut next.edges[*index];
             edge.leader = leader.unwrap_or(edge.leader);
-            next.edge_of[edge.follower] = leader.map(|_| *index);
+            let own = &mut next.edges_of[edge.follower];
+            own.retain(|other| other != index);
+            if leader.is_some() {
+                own.push(*index);
+                own.sort_unstable();
+            }
         }
-        let mut graph = DiGraph::<(), usize>::with_capacity(next.robots, next.edges.len());
+        let mut graph = DiGraph::<(), ()>::with_capacity(next.robots, next.edges.len());
         for _ in 0..next.robots {
             graph.add_node(());
         }
-        for index in next.edge_of.iter().flatten() {
+        for index in next.edges_of.iter().flatten() {
             let edge = next.edges[*index];
-            graph.add_edge(NodeIndex::new(edge.leader), NodeIndex::new(edge.follower), *index);
+            graph.add_edge(NodeIndex::new(edge.leader), NodeIndex::new(edge.follower), ());
         }
         let Ok(order) = toposort(&graph, None) else { return false };
-        next.evaluation_order = order.into_iter().filter_map(|node| incoming(&graph, node)).collect();
+        next.evaluation_order =
+            order.into_iter().flat_map(|node| next.edges_of[node.index()].clone()).collect();
         *self = next;
         true
     }
@@ -170,7 +184,8 @@ impl Graph {
         &self.edges
     }
 
-    /// Indices of edges such that every leader's own edge comes before those of its followers.
+    /// Indices of the edges in force, such that every leader's own edges come before those of its followers. Those of one
+    /// follower stand together, in the order they were given.
     pub fn evaluation_order(&self) -> &[usize] {
         &self.evaluation_order
     }
@@ -190,35 +205,30 @@ fn resolve(
     if l == f {
         return Err(GraphError::SelfEdge(follower.to_owned()));
     }
-    if let Some(first) = graph.neighbors_directed(NodeIndex::new(f), Direction::Incoming).next() {
-        return Err(GraphError::TwoLeaders {
-            follower: follower.to_owned(),
-            first: graph[first].to_owned(),
-            second: leader.to_owned(),
-        });
+    if graph.contains_edge(NodeIndex::new(l), NodeIndex::new(f)) {
+        return Err(GraphError::Twice { follower: follower.to_owned(), leader: leader.to_owned() });
     }
     Ok(Edge { leader: l, follower: f })
 }
 
-fn incoming<N>(graph: &DiGraph<N, usize>, node: NodeIndex) -> Option<usize> {
-    graph.edges_directed(node, Direction::Incoming).next().map(|edge| *edge.weight())
-}
-
-/// Names along the ring that `node` lies on, each followed by the robot it leads, back to the start.
+/// Names along a ring through `node`, each followed by a robot it leads, back to the start.
 fn ring(graph: &DiGraph<&str, usize>, node: NodeIndex) -> Vec<String> {
-    // With one leader each, walking from follower to leader must run into the ring and around it.
-    let leader = |n: NodeIndex| graph.neighbors_directed(n, Direction::Incoming).next();
-    let mut on_ring = node;
-    for _ in 0..graph.node_count() {
-        on_ring = leader(on_ring).unwrap_or(on_ring);
-    }
-    let mut names = vec![graph[on_ring].to_owned()];
-    let mut at = leader(on_ring);
-    while let Some(next) = at.filter(|&n| n != on_ring) {
-        names.push(graph[next].to_owned());
+    // The robots on rings with `node` are those that come both before and after it.
+    let rings = kosaraju_scc(graph);
+    let Some(on_ring) = rings.into_iter().find(|nodes| nodes.contains(&node)) else { return vec![] };
+    let leader = |n: NodeIndex| {
+        graph.neighbors_directed(n, Direction::Incoming).find(|leader| on_ring.contains(leader))
+    };
+    // Walking from follower to leader among them comes round.
+    let mut seen = vec![];
+    let mut at = Some(node);
+    while let Some(next) = at.filter(|next| !seen.contains(next)) {
+        seen.push(next);
         at = leader(next);
     }
-    names.push(graph[on_ring].to_owned());
+    let from = at.and_then(|at| seen.iter().position(|one| *one == at)).unwrap_or(0);
+    let round = seen[from..].iter().chain(seen.get(from));
+    let mut names: Vec<_> = round.map(|n| graph[*n].to_owned()).collect();
     names.reverse();
     names
 }
@@ -278,6 +288,24 @@ mod tests {
     }
 
     #[test]
+    fn a_robot_may_have_several_leaders_and_comes_after_each_of_them() {
+        let pairs = [("b", "d"), ("a", "b"), ("a", "c"), ("c", "d")];
+        let mut graph = build(&["d", "c", "b", "a"], &pairs).expect("a diamond is a formation");
+        assert_eq!((graph.edges_of(0), graph.leader_of(0)), (&[0, 3][..], Some(2)));
+        assert!(graph.comes_after(0, 1) && graph.comes_after(0, 2) && graph.comes_after(0, 3));
+        assert_eq!(graph.evaluation_order()[2..], [0, 3]);
+        // One of its leaders would follow it.
+        assert!(!graph.rewire(&[(2, Some(0))]));
+        assert!(graph.rewire(&[(0, None)]));
+        assert_eq!((graph.edges_of(0), graph.is_in_force(0)), (&[3][..], false));
+        assert!(graph.rewire(&[(0, Some(3))]));
+        assert_eq!((graph.edges_of(0), graph.leader_of(0)), (&[0, 3][..], Some(3)));
+        let ring = build(&["a", "b", "c"], &[("a", "b"), ("c", "b"), ("b", "c"), ("a", "c")]);
+        let Err(GraphError::Cycle(names)) = ring else { panic!("{ring:?}") };
+        assert_eq!((names.len(), names.first()), (3, names.last()));
+    }
+
+    #[test]
     fn every_error_names_its_robots() {
         let cases: [(Result<Graph, GraphError>, &[&str]); 7] = [
             (build(&[], &[]), &["at least one robot"]),
@@ -285,7 +313,7 @@ mod tests {
             (build(&["ann", "bob"], &[("eve", "bob")]), &["bob", "eve"]),
             (build(&["ann"], &[("ann", "eve")]), &["eve"]),
             (build(&["ann"], &[("ann", "ann")]), &["ann", "itself"]),
-            (build(&["ann", "bob", "cy"], &[("ann", "cy"), ("bob", "cy")]), &["cy", "ann", "bob"]),
+            (build(&["ann", "cy"], &[("ann", "cy"), ("ann", "cy")]), &["cy", "ann", "twice"]),
             (
                 build(&["ann", "bob", "cy", "dan"], &[("bob", "cy"), ("cy", "dan"), ("dan", "bob")]),
                 &["bob", "cy", "dan", "ring"],

@@ -5,9 +5,9 @@
 //! where extra is g_v V_i for full state feedback and ū = β sign(e) (or β tanh(slope · e)) for the other two.
 //! Output feedback takes ds/dt from the observer. Saturation follows in [`vocabulary::Limits`].
 
-use crate::observer::Estimate;
 use crate::path_heading::Heading;
 use crate::relative::Geometry;
+use laws::Knowledge;
 use nalgebra::Vector2;
 use vocabulary::{Command, LawKind, MotionInput, SetPoint, math};
 
@@ -65,11 +65,12 @@ impl Law {
         geometry.rates(follower_speed, leader.speed, turn_rate)
     }
 
-    /// ds/dt as this law takes it: the observer's `estimate`, or the truth for a law that is told it.
-    pub(crate) fn rates_of(&self, estimate: &Estimate, truth: impl FnOnce() -> [f64; 2]) -> [f64; 2] {
+    /// What the law has to know of its leader.
+    pub fn knows(&self) -> Knowledge {
         match self.kind {
-            LawKind::OutputFeedback => estimate.rates,
-            LawKind::FullState | LawKind::RobustState => truth(),
+            LawKind::FullState => Knowledge::Motion,
+            LawKind::RobustState => Knowledge::Rates,
+            LawKind::OutputFeedback => Knowledge::Output,
         }
     }
 

@@ -10,6 +10,7 @@
 pub mod assignment;
 pub mod certificate;
 pub mod column;
+mod custom;
 pub mod energy;
 pub mod feasible;
 pub mod formation;
@@ -28,6 +29,7 @@ pub mod set_point;
 mod standing;
 pub mod tracker;
 
+pub use custom::{Custom, CustomState};
 pub use formation::{Decision, EdgeLaw, Formation, FormationState};
 pub use graph::{Graph, GraphError};
 pub use hand_over::{HandOver, HandOverParameters};

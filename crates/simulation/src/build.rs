@@ -76,7 +76,9 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),
         },
-        formation: Formation::new(graph, laws, limits, leads, scene.time.period),
+        formation: Formation::new(graph, laws, limits, leads, scene.time.period)
+            .with_seed(scene.seed)
+            .in_continuous_time(scene.time.mode == TimeMode::Continuous),
         stage,
         observer_starts: followers.iter().map(|(_, follow)| follow.observer.start).collect(),
         mode: scene.time.mode,
@@ -142,9 +144,11 @@ pub fn edge_law(follow: &Follow) -> EdgeLaw {
                 }
             },
         },
+        custom: None,
         observer,
         tracker: tracker_parameters(follow, observer),
         set_point: SetPointTrajectory { distance: follow.distance.clone(), bearing: follow.bearing.clone() },
+        free: [false; 2],
         standing: law.standing,
         narrowing: None,
     }

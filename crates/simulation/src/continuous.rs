@@ -4,7 +4,7 @@
 //! every step. It costs about 1/ε evaluations per simulated second, which is the price of continuous time.
 
 use formation::{Estimate, Formation, FormationState};
-use vocabulary::{EdgeSample, LawKind, Motion, Observation, Pose, math, wrap};
+use vocabulary::{EdgeSample, Motion, Observation, Pose, math, wrap};
 use world::{Unicycles, World};
 
 /// Longest step, s.
@@ -27,6 +27,8 @@ struct State {
     robots: Vec<[f64; 4]>,
     /// Per edge.
     estimates: Vec<Estimate>,
+    /// Memories of custom laws, per edge.
+    memories: Vec<Vec<f64>>,
 }
 
 impl Continuous {
@@ -38,7 +40,7 @@ impl Continuous {
 
     /// Chooses the step for the observers of `formation`.
     pub(crate) fn keep_pace(&mut self, formation: &Formation) {
-        let observing = formation.laws().iter().filter(|e| e.law.kind == LawKind::OutputFeedback);
+        let observing = formation.laws().iter().filter(|e| e.observes());
         let fastest = observing.flat_map(|e| e.observer.epsilon).fold(f64::INFINITY, f64::min);
         self.step = STEP_MAX.min(fastest / STEPS_PER_EPSILON);
     }
@@ -53,7 +55,8 @@ impl Continuous {
     ) {
         let mut scratch = state.clone();
         let robots = self.world.snapshot().robots.iter().map(|r| variables(&r.motion)).collect();
-        let mut y = State { robots, estimates: state.estimates.clone() };
+        let memories = state.customs.iter().map(|custom| custom.memory().to_vec()).collect();
+        let mut y = State { robots, estimates: state.estimates.clone(), memories };
         let steps = (period / self.step).ceil();
         let h = period / steps;
         for k in 0..steps as usize {
@@ -68,6 +71,9 @@ impl Continuous {
             bound_speeds(formation, t + h, &mut y);
         }
         state.estimates.clone_from(&y.estimates);
+        for (custom, memory) in state.customs.iter_mut().zip(&y.memories) {
+            custom.set_memory(memory);
+        }
         let motions: Vec<Motion> = y.robots.iter().map(motion).collect();
         self.world.place(time + period, &motions);
     }
@@ -80,8 +86,11 @@ impl Continuous {
         };
         self.observations.extend(formation.edges().iter().map(observe));
         scratch.estimates.clone_from(&y.estimates);
-        formation.evaluate(t, &self.observations, scratch);
-        let mut out = State { robots: vec![[0.0; 4]; y.robots.len()], estimates: y.estimates.clone() };
+        for (custom, memory) in scratch.customs.iter_mut().zip(&y.memories) {
+            custom.set_memory(memory);
+        }
+        let mut out = State { robots: vec![[0.0; 4]; y.robots.len()], ..y.clone() };
+        formation.evaluate(t, &self.observations, scratch, &mut out.memories);
         for (robot, lead) in formation.leads() {
             let drive = lead.at(t);
             out.robots[*robot] =
@@ -99,9 +108,10 @@ impl Continuous {
                 turn_rate: applied.turn_rate,
             };
             let law = &formation.laws()[index];
-            out.estimates[index] = match law.law.kind {
-                LawKind::OutputFeedback => law.observer.derivative(&y.estimates[index], &sample),
-                LawKind::FullState | LawKind::RobustState => Estimate::default(),
+            out.estimates[index] = if law.observes() {
+                law.observer.derivative(&y.estimates[index], &sample)
+            } else {
+                Estimate::default()
             };
         }
         out
@@ -145,6 +155,9 @@ impl State {
                 y.output[i] += h * d.output[i];
                 y.rates[i] += h * d.rates[i];
             }
+        }
+        for (y, d) in out.memories.iter_mut().flatten().zip(rate.memories.iter().flatten()) {
+            *y += h * d;
         }
         out
     }

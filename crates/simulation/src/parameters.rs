@@ -4,7 +4,6 @@ use crate::setup::Setup;
 use formation::EdgeLaw;
 use std::collections::VecDeque;
 use std::sync::Arc;
-use vocabulary::LawKind;
 use world::Handling;
 
 /// What holds from one control sample on, until something else does.
@@ -43,9 +42,8 @@ impl ParameterSet {
 
 /// Whether an observer begins to run that was not needed before, or begins anew on another output.
 pub(crate) fn wakes(before: &EdgeLaw, after: &EdgeLaw) -> bool {
-    let runs = |law: &EdgeLaw| law.law.kind == LawKind::OutputFeedback;
     let output = |law: &EdgeLaw| law.law.heading.reference();
-    runs(after) && (!runs(before) || output(before) != output(after)) && after.tracker.is_none()
+    after.observes() && (!before.observes() || output(before) != output(after)) && after.tracker.is_none()
 }
 
 /// The first control sample at or after `at` s; one that is missed by rounding only counts.

@@ -23,7 +23,7 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
     for (index, (edge, out)) in run.formation.edges().iter().zip(&mut run.record.edges).enumerate() {
         let robots = &mut run.record.snapshot.robots;
         let decision = &run.state.decisions[index];
-        let wanted = decision.set_point;
+        let mut wanted = decision.set_point;
         let sensing = run.sensing.as_ref().filter(|_| run.formation.laws()[index].tracker.is_some());
         let known = &run.observations[index];
         let (relative, age, pan) = match sensing {
@@ -35,6 +35,11 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
                 (Relative::between(leader, follower), age, pan)
             }
         };
+        for (k, at) in [relative.distance, relative.bearing].into_iter().enumerate() {
+            if run.formation.laws()[index].free[k] {
+                wanted[k] = at;
+            }
+        }
         if graph.is_in_force(index) {
             robots[edge.follower].camera_pan = pan;
         }

@@ -7,7 +7,7 @@ use crate::plant::Plant;
 use crate::record::write_record;
 use crate::simulation::Simulation;
 use formation::{EdgeLaw, Estimate};
-use vocabulary::{Contact, Edge, LawKind, TimeMode};
+use vocabulary::{Contact, Edge, TimeMode};
 use world::World;
 
 /// Computes the next control sample into `run.record`; false when the run is over.
@@ -133,7 +133,7 @@ fn advance(run: &mut Simulation) {
             let Simulation { formation, state, events, period, .. } = run;
             for (index, edge) in formation.edges().iter().enumerate() {
                 let law = &formation.laws()[index];
-                if law.law.kind == LawKind::OutputFeedback && law.tracker.is_none() {
+                if law.observes() && law.tracker.is_none() {
                     observe(world, *edge, law, measured.then_some(*period), &mut state.estimates[index]);
                 }
             }

@@ -324,7 +324,16 @@ mod tests {
         let observer =
             Observer { epsilon: [epsilon; 2], alpha1: [2.0; 2], alpha2: [1.0; 2], distance_min: 0.1 };
         let set_point = SetPointTrajectory::constant(2.0, -0.75 * std::f64::consts::PI);
-        EdgeLaw { law, observer, tracker: None, set_point, standing: false, narrowing: None }
+        EdgeLaw {
+            law,
+            custom: None,
+            observer,
+            tracker: None,
+            set_point,
+            free: [false; 2],
+            standing: false,
+            narrowing: None,
+        }
     }
 
     const AHEAD: MotionInput =

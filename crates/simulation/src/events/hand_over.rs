@@ -4,7 +4,7 @@ use super::{Duty, check::refused};
 use crate::simulation::Simulation;
 use formation::{EdgeLaw, Estimate, HandOver, Observer, SetPointTrajectory};
 use std::sync::Arc;
-use vocabulary::{Edge, EventKind, EventRecord, LawKind, Limits, Observation, Refusal, Relative, Trajectory};
+use vocabulary::{Edge, EventKind, EventRecord, Limits, Observation, Refusal, Relative, Trajectory};
 
 /// A robot that is about to follow another.
 #[derive(Debug, Clone)]
@@ -79,7 +79,7 @@ pub(super) fn begin(run: &mut Simulation, mut moves: Vec<Move>, time: f64) {
     let mut settling: f64 = 0.0;
     for step in &mut moves {
         let law = &run.formation.laws()[step.edge];
-        let observes = law.law.kind == LawKind::OutputFeedback && law.tracker.is_none();
+        let observes = law.observes() && law.tracker.is_none();
         step.estimate = observes.then(|| estimate_now(run, step));
         if observes {
             settling = settling.max(settling_time(&law.observer));

@@ -279,7 +279,7 @@ fn instant(
     let (state, time) = (&record.edges[index], record.snapshot.time);
     let limits = simulation.formation().limits(edge.follower);
     let speed = record.snapshot.robots[edge.follower].motion.speed;
-    let observes = law.law.kind == LawKind::OutputFeedback;
+    let observes = law.observes();
     let diverted = record.is_filtered(edge.follower);
     let mut set_point = law.set_point.at(time);
     // It moves with the heading it is held against, and where its follower stands.

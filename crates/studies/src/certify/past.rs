@@ -4,7 +4,7 @@ use formation::Estimate;
 use formation::certificate::{Circumstances, Instant, StatementFinding, Witness, WitnessRow, certify};
 use scene::{Follow, Robot, Role, Scene, SensingKind};
 use simulation::edge_law;
-use vocabulary::{Edge, LawKind, Motion, MotionInput, MotionPhase, SetPoint, StepRecord, TimeMode, wrap};
+use vocabulary::{Edge, Motion, MotionInput, MotionPhase, SetPoint, StepRecord, TimeMode, wrap};
 
 /// What the theorems say of edge number `index` along `records`, so far, and the quantities they speak of.
 pub fn so_far(
@@ -40,7 +40,7 @@ pub fn rows(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) 
 fn witness(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -> Witness {
     let law = edge_law(follow);
     let mut witness = Witness::new(law.law, law.observer).keeping();
-    let observes = law.law.kind == LawKind::OutputFeedback;
+    let observes = law.observes();
     let mut before: Option<(f64, Motion, [f64; 2])> = None;
     for record in records {
         let robots = &record.snapshot.robots;
