@@ -83,6 +83,7 @@ fn word(premise: &Premise) -> &'static str {
     match premise {
         Premise::FullState => "full-state",
         Premise::NoObserver => "no-observer",
+        Premise::SeveralLeaders => "several-leaders",
         Premise::Smoothed => "tanh",
         Premise::Chatter(_) => "chatter",
         Premise::Saturated(_) => "saturated",

@@ -179,7 +179,33 @@ pub(crate) fn sizes(fleet: &FleetInfo) -> f64 {
     fleet.robots.iter().map(|m| crate::gpu::model::size(&m.body)).fold(0.0, f64::max)
 }
 
-/// The set point of each edge on the ground, m; `None` where its follower follows nobody.
+/// All places on the ground that the set point of edge number `index` allows, m, as a line: the circle of a wanted distance
+/// around the leader where the bearing is left free, the ray of a wanted bearing where the distance is. The line begins and
+/// ends opposite the follower, or at the leader. `None` where both are wanted, or nobody is followed.
+pub fn free_places(fleet: &FleetInfo, record: &StepRecord, index: usize) -> Option<Vec<[f64; 2]>> {
+    let free = fleet.free(index);
+    let state = record.edges.get(index)?;
+    let leader = record.snapshot.robots.get(record.edge(fleet, index)?.leader)?.motion.pose;
+    let [distance, bearing] = state.set_point;
+    let place = |k: u32| {
+        let share = f64::from(k) / f64::from(SIDES);
+        match free {
+            [false, true] => {
+                Some(leader.polar(distance, bearing + (2.0 * share - 1.0) * std::f64::consts::PI))
+            }
+            [true, false] => Some(leader.polar(1.5 * share * distance, bearing)),
+            _ => None,
+        }
+    };
+    let places = (0..=SIDES).map(place).collect::<Option<Vec<_>>>()?;
+    places.iter().flatten().all(|x| x.is_finite()).then_some(places)
+}
+
+/// Sides of what is drawn for a circle.
+const SIDES: u32 = 96;
+
+/// The set point of each edge on the ground, m; `None` where its follower follows nobody. What is left free of one is as it
+/// is.
 pub fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<Option<[f64; 2]>> {
     let place = |k: usize| {
         let state = record.edges.get(k)?;

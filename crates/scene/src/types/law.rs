@@ -39,6 +39,13 @@ settings! {
     }
 }
 
+impl Law {
+    /// How many leaders it looks at.
+    pub fn leaders(&self) -> usize {
+        1
+    }
+}
+
 words! {
     /// Form of the switching term.
     pub enum SwitchingKind {

@@ -92,7 +92,8 @@ pub fn reach(scene: &Scene) -> Result<Vec<Reach>, BuildError> {
 /// Whether a scene's set points move, so that one of them does not stand for all.
 pub fn moving(scene: &Scene) -> bool {
     let still = |channel: &ScalarTrajectory| matches!(channel, ScalarTrajectory::Constant(_));
-    scene.followers().any(|(_, follow)| !still(&follow.distance) || !still(&follow.bearing))
+    let moves = |wanted: &Option<ScalarTrajectory>| wanted.as_ref().is_some_and(|wanted| !still(wanted));
+    scene.edges().any(|(_, _, leader)| moves(&leader.distance) || moves(&leader.bearing))
 }
 
 fn place([distance, bearing]: [f64; 2]) -> [f64; 2] {
