@@ -10,8 +10,10 @@ use vocabulary::Word;
 
 /// The names of all leaders of a robot, as far as they could be read.
 pub(crate) fn named(keys: &RobotKeys) -> Vec<Found<String>> {
-    let listed = keys.leaders.iter().flat_map(|list| &list.value).filter_map(|leader| leader.name.clone());
-    keys.leader.clone().into_iter().chain(listed).collect()
+    match &keys.leaders {
+        Some(list) => list.value.iter().filter_map(|leader| leader.name.clone()).collect(),
+        None => keys.leader.clone().into_iter().collect(),
+    }
 }
 
 /// The one leader or the several of a robot that follows by `law`; `None` after reporting errors.

@@ -134,7 +134,7 @@ fn groups_become_robots_near_their_places() {
             Role::Lead { .. } => None,
         })
         .collect();
-    let wing = |leader, side: f64| (leader, ScalarTrajectory::Constant(side * 0.75 * PI));
+    let wing = |leader, side: f64| (leader, Some(ScalarTrajectory::Constant(side * 0.75 * PI)));
     assert_eq!(
         leaders,
         [

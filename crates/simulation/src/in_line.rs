@@ -7,6 +7,9 @@ use vocabulary::{Relative, math};
 /// Nearer to a line than this, rad, two distances say little of the way across it.
 const IN_LINE: f64 = 10.0 / 180.0 * std::f64::consts::PI;
 
+/// A cosine may be larger than 1 by this.
+const ROUNDING: f64 = 1e-9;
+
 /// Every follower of two leaders whose bearings are both left free and that starts, or is to be, in line with them, in words;
 /// also those whose two distances do not meet.
 pub fn in_line(simulation: &Simulation) -> Vec<String> {
@@ -61,7 +64,7 @@ fn told(who: &str, when: &str, angle: f64) -> String {
 /// there is no such place.
 fn angle([a, b]: [f64; 2], apart: f64) -> Option<f64> {
     let cosine = (a * a + b * b - apart * apart) / (2.0 * a * b);
-    (cosine.abs() <= 1.0).then(|| math::acos(cosine))
+    (cosine.abs() <= 1.0 + ROUNDING).then(|| math::acos(cosine.clamp(-1.0, 1.0)))
 }
 
 /// How far two robots are to be from each other, m, once all are at their set points behind one head and drive straight on;

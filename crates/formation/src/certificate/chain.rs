@@ -46,6 +46,8 @@ const HEADING: [usize; 2] = [8, 9];
 /// Why there is no linear edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NotLinear {
+    /// The follower has several leaders.
+    SeveralLeaders,
     /// The sign has no slope.
     Sign,
     /// There is no steady motion: β is too small, or the place stands still.

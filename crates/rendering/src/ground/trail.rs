@@ -305,6 +305,31 @@ mod tests {
     }
 
     #[test]
+    fn what_is_left_free_of_a_set_point_is_a_circle_or_a_ray() {
+        let robots = vec![RobotInfo::new("a", true, vocabulary::Body::default()); 2];
+        let edges = vec![vocabulary::Edge { leader: 0, follower: 1 }];
+        let mut fleet = FleetInfo { robots, edges, ..FleetInfo::default() };
+        let mut robots = vec![RobotState::default(); 2];
+        robots[0].motion.pose = Pose::new(1.0, 2.0, 0.5);
+        let edge = vocabulary::EdgeState { set_point: [2.0, 2.5], ..vocabulary::EdgeState::default() };
+        let snapshot = Snapshot { robots, ..Snapshot::default() };
+        let record = StepRecord { snapshot, edges: vec![edge], ..StepRecord::default() };
+        assert_eq!(free_places(&fleet, &record, 0), None);
+        let goal = set_points(&fleet, &record)[0].expect("a set point");
+        let away = |[x, y]: [f64; 2], [u, v]: [f64; 2]| vocabulary::math::hypot(x - u, y - v);
+        fleet.free = vec![[false, true]];
+        let circle = free_places(&fleet, &record, 0).expect("a circle");
+        assert!(circle.iter().all(|place| (away(*place, [1.0, 2.0]) - 2.0).abs() < 1e-12));
+        assert!(away(circle[circle.len() / 2], goal) < 1e-12, "the follower is in its middle");
+        assert!(away(circle[0], circle[circle.len() - 1]) < 1e-12, "it is closed");
+        fleet.free = vec![[true, false]];
+        let ray = free_places(&fleet, &record, 0).expect("a ray");
+        assert_eq!((ray[0], ray.len()), ([1.0, 2.0], circle.len()));
+        let end = ray[ray.len() - 1];
+        assert!((away(end, goal) - 1.0).abs() < 1e-12 && (away(end, [1.0, 2.0]) - 3.0).abs() < 1e-12);
+    }
+
+    #[test]
     fn contacts_are_remembered_once_and_not_for_ever() {
         let mut trail = Trail::new(&FleetInfo::default());
         let contact = |number: u64, begin: f64| Contact {
