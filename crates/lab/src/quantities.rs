@@ -187,9 +187,13 @@ fn certified(
         PlotQuantity::Lyapunov => |row| row.v,
         _ => return None,
     };
-    let rows =
-        if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, index, edge, follow) };
+    let rows = if is_robust(follow) { rows(records, index, edge, follow) } else { vec![] };
     Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
+}
+
+/// Whether a follower's law has a switching term.
+fn is_robust(follow: &Follow) -> bool {
+    follow.law.built_in().is_some_and(|kind| kind != LawKind::FullState)
 }
 
 /// A quantity of an edge in a record; `None` if it is not defined.
@@ -202,7 +206,7 @@ fn value(
 ) -> Option<f64> {
     let state = record.edges.get(index)?;
     let rates = || true_rates(&record.snapshot, edge, state, follow.law.distance_min);
-    let observes = follow.law.kind == LawKind::OutputFeedback;
+    let observes = follow.law.observes();
     let value = match quantity {
         PlotQuantity::DistanceError => state.error[0],
         PlotQuantity::BearingError => state.error[1].to_degrees(),

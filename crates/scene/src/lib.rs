@@ -17,6 +17,7 @@ mod graph;
 mod ground;
 mod groups;
 mod heights_file;
+mod law_file;
 mod link;
 mod load;
 mod names;
@@ -51,7 +52,7 @@ pub use shipped::{SHIPPED, Shipped, nearest_shipped, scene_name, shipped};
 pub use text::node::composed;
 pub use types::{
     Change, Compensation, Environment, Event, Expect, Failure, Film, Follow, Ground, HandOver, Happening,
-    Holds, Joining, Law, Narrowing, Noise, Observer, OnContact, Patch, Path, Physics, Place, Plot,
+    Holds, Joining, Law, LawSource, Narrowing, Noise, Observer, OnContact, Patch, Path, Physics, Place, Plot,
     PropMotion, PropSpec, Proximity, Recovery, Relief, Robot, Role, Safety, Scene, Sensing, SensingKind,
-    Shot, SpeedProfile, SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views, Vision, When,
+    Shot, SpeedProfile, SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views, Vision, When, WrittenLaw,
 };

@@ -106,6 +106,8 @@ pub struct FleetInfo {
     pub has_sensors: bool,
     /// Whether any robot's commands may pass through a safety filter.
     pub has_safety: bool,
+    /// Whether any follower may have a custom law.
+    pub has_laws: bool,
     /// Whether robots may change leaders, fail or join while the run goes.
     pub has_events: bool,
     /// Solid things that are no robots, in the order of the snapshots.

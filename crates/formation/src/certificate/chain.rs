@@ -46,6 +46,8 @@ const HEADING: [usize; 2] = [8, 9];
 /// Why there is no linear edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NotLinear {
+    /// A custom law: what it does is not known here.
+    CustomLaw,
     /// The sign has no slope.
     Sign,
     /// There is no steady motion: β is too small, or the place stands still.
@@ -165,6 +167,9 @@ impl LinearEdge {
     /// # Errors
     /// [`NotLinear`] where there is no steady motion to linearise about.
     pub fn about(law: &EdgeLaw, leader: &MotionInput) -> Result<Self, NotLinear> {
+        if law.custom.is_some() {
+            return Err(NotLinear::CustomLaw);
+        }
         if law.law.kind != LawKind::FullState && law.law.switching == Switching::Sign {
             return Err(NotLinear::Sign);
         }

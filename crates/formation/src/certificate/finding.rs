@@ -119,6 +119,8 @@ pub struct Circumstances {
     pub sampled_measurement: bool,
     /// Whether the follower goes by measurements.
     pub measures: bool,
+    /// Whether a custom law takes the place of the paper's.
+    pub custom: bool,
     /// Whether the follower or its leader is a vehicle on wheels.
     pub wheels: bool,
     /// When the leader first moved as no bounded d²u/dt² allows, s; `None` where it is smooth.
@@ -146,6 +148,14 @@ impl FindingView<'_> {
             Statement::RobustGain | Statement::NonNegative | Statement::TrackingDecrease => robust,
             _ => observes,
         };
+        if self.circumstances.custom {
+            return StatementFinding {
+                statement,
+                unmet: vec![Premise::CustomLaw],
+                against: None,
+                margin: None,
+            };
+        }
         if !applies {
             let premise = if robust { Premise::NoObserver } else { Premise::FullState };
             return StatementFinding { statement, unmet: vec![premise], against: None, margin: None };

@@ -16,6 +16,8 @@ pub struct Spell {
 pub enum Premise {
     /// The law has no robust term: it is told its leader's motion and cancels it.
     FullState,
+    /// The law is none of the paper's.
+    CustomLaw,
     /// The law has no observer.
     NoObserver,
     /// β tanh(slope e) stands in for β sign(e).
@@ -71,6 +73,7 @@ impl Premise {
         };
         match self {
             Self::FullState => "the law is told its leader's motion and has no robust term".to_owned(),
+            Self::CustomLaw => "the law is none of the paper's".to_owned(),
             Self::NoObserver => "the law has no observer".to_owned(),
             Self::Smoothed => "tanh instead of sign".to_owned(),
             Self::Chatter(when) => spell("the sign switches faster than steps follow", when),

@@ -114,7 +114,7 @@ pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         return empty_panel(ui, app_state, "There is no follower, so there is nothing to observe.");
     };
     let measures = follow.sensing.kind != scene::SensingKind::Truth;
-    if follow.law.kind != LawKind::OutputFeedback && !measures {
+    if !follow.law.observes() && !measures {
         return nothing(ui, "This law knows the rates. Output feedback estimates them.");
     }
     scope(ui, app_state, name, out);

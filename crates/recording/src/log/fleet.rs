@@ -25,7 +25,8 @@ impl Record for FleetInfo {
         f.each("terrain", &mut terrain)?;
         self.terrain = terrain.into_iter().next().map(Arc::new);
         f.flag("has_safety", &mut self.has_safety)?;
-        f.flag("has_events", &mut self.has_events)
+        f.flag("has_events", &mut self.has_events)?;
+        f.flag("has_laws", &mut self.has_laws)
     }
 }
 

@@ -100,7 +100,7 @@ fn headings_and_standing_are_shown_and_tuned() {
         stands.state_mut().app_state.act(&action);
     }
     let state = &stands.state().app_state;
-    let law = state.follower(0).map(|(_, _, follow)| follow.law).expect("a follower");
+    let law = state.follower(0).map(|(_, _, follow)| follow.law.clone()).expect("a follower");
     assert!(!law.standing && law.heading == HeadingReference::Leader && state.notice.is_none());
     assert!(!state.log.iter().any(|line| line.text.contains("restarts")), "{:?}", state.log);
     stands.run();
