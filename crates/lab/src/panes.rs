@@ -42,6 +42,7 @@ pub const PANES: &[(&str, Draw)] = &[
     ("Certificates", |ui, on| certificates::show(ui, on.app_state, on.out)),
     ("Safety", |ui, on| safety::show(ui, on.app_state, on.out)),
     ("Barriers", |ui, on| safety::plots(ui, on.app_state, on.out)),
+    ("Signals", |ui, on| curves::signals(ui, on.app_state, on.out)),
 ];
 
 impl Pane {
@@ -70,7 +71,7 @@ pub fn arrangement() -> Tree<Pane> {
         (tabs(&["Law", "Observer", "Limits", "Safety"]), tabs(&["Sensing", "World", "Film", "Log"]));
     let plots = [
         tabs(&["Errors"]),
-        tabs(&["Commands", "Speeds", "Barriers"]),
+        tabs(&["Commands", "Speeds", "Barriers", "Signals"]),
         tabs(&["Observer error"]),
         tabs(&["Energy", "Certificates", "Clearance"]),
     ];

@@ -17,5 +17,5 @@ pub use declaration::{Declaration, Knowledge, Parameter, Quantity, Scale};
 pub use input::{INPUTS, Input, InputKind, LEADERS_MAX, LeaderInput};
 pub use language::{LawFile, Mistake};
 pub use noise::Noise;
-pub use shipped::{SHIPPED_LAWS, ShippedLaw, shipped};
+pub use shipped::{SHIPPED_LAWS, ShippedLaw, TEMPLATE, shipped};
 pub use unit::Unit;

@@ -30,6 +30,9 @@ shipped![
     "two-distances",
 ];
 
+/// The text with which a new law begins: it follows as it is, and shows every part of a law.
+pub const TEMPLATE: &str = include_str!("template.law");
+
 /// The law called `name` that comes with the program.
 pub fn shipped(name: &str) -> Option<&'static ShippedLaw> {
     SHIPPED_LAWS.iter().find(|law| law.name == name)

@@ -44,7 +44,7 @@ mod types;
 mod vehicle;
 
 pub use diagnostics::{Diagnostic, Diagnostics};
-pub use edit::{ChangeText, EditError, SceneText};
+pub use edit::{ChangeText, EditError, SceneText, toml_text};
 pub use link::{Link, LinkError, LinkOrigin, LinkProof, LinkedScene, TimedOverride};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};

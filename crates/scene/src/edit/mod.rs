@@ -29,6 +29,11 @@ pub struct SceneText {
 #[error("{0}")]
 pub struct EditError(String);
 
+/// A text as a value of TOML, over several lines where it has them.
+pub fn toml_text(text: &str) -> String {
+    Value::from(text).decorated("", "").to_string()
+}
+
 /// Puts `texts` of laws in the places of the names of their files, in all tables called `law`.
 fn embed(item: &mut Item, texts: &BTreeMap<String, String>) {
     if let Item::ArrayOfTables(tables) = item {
