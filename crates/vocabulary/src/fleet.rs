@@ -89,6 +89,7 @@ impl Default for Light {
 
 /// Robots, edges, surroundings and words of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a table and a topic of its own")]
 pub struct FleetInfo {
     /// Title of the scene.
     pub title: String,
