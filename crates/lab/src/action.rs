@@ -176,6 +176,8 @@ pub enum Action {
     Element(&'static str, bool),
     /// Show or hide a panel by its name.
     Panel(&'static str),
+    /// Bring a panel by its name to the front.
+    ShowPanel(&'static str),
     /// Switch between the light and the dark theme.
     Theme,
     /// Set the zoom of the interface; 1 is normal.

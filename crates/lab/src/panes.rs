@@ -3,7 +3,7 @@
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::panels::{
-    branches, certificates, curves, edge, film, formation, law, log, safety, sensing, world,
+    branches, certificates, curves, custom_law, edge, film, formation, law, log, safety, sensing, world,
 };
 use crate::quantities::PlotQuantity;
 use eframe::egui::{ComboBox, Frame, Id, Panel, ScrollArea, Ui, WidgetText};
@@ -42,6 +42,7 @@ pub const PANES: &[(&str, Draw)] = &[
     ("Certificates", |ui, on| certificates::show(ui, on.app_state, on.out)),
     ("Safety", |ui, on| safety::show(ui, on.app_state, on.out)),
     ("Barriers", |ui, on| safety::plots(ui, on.app_state, on.out)),
+    ("Law text", |ui, on| custom_law::text(ui, on.app_state, on.out)),
     ("Signals", |ui, on| curves::signals(ui, on.app_state, on.out)),
 ];
 
@@ -67,8 +68,10 @@ pub fn arrangement() -> Tree<Pane> {
     };
     let view = tabs(&["View"]);
     let (formation, edge) = (tabs(&["Formation"]), tabs(&["Edge", "Branches"]));
-    let (law, more) =
-        (tabs(&["Law", "Observer", "Limits", "Safety"]), tabs(&["Sensing", "World", "Film", "Log"]));
+    let (law, more) = (
+        tabs(&["Law", "Observer", "Limits", "Safety"]),
+        tabs(&["Sensing", "World", "Film", "Log", "Law text"]),
+    );
     let plots = [
         tabs(&["Errors"]),
         tabs(&["Commands", "Speeds", "Barriers", "Signals"]),
@@ -105,6 +108,14 @@ pub fn toggle(tree: &mut Tree<Pane>, name: &str) {
         Some(id) if pane.0 != 0 && tree.is_visible(id) => {
             tree.remove_recursively(id);
         }
+        _ => bring(tree, name),
+    }
+}
+
+/// Brings a panel to the front.
+pub fn bring(tree: &mut Tree<Pane>, name: &str) {
+    let Some(pane) = Pane::named(name) else { return };
+    match tree.tiles.find_pane(&pane) {
         Some(id) => tree.set_visible(id, true),
         None => {
             let id = tree.tiles.insert_pane(pane);

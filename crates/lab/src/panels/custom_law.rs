@@ -1,7 +1,8 @@
 //! Custom laws: which law a follower has, sliders for the parameters that a law declares, and its text.
 
 use super::controls::released;
-use super::{chosen, on_click, tune};
+use super::law::scope;
+use super::{chosen, empty_panel, on_click, tune};
 use crate::action::{Action, LawChoice};
 use crate::app_state::{AppState, LawEdit};
 use crate::numbers::toml_number;
@@ -58,21 +59,39 @@ fn title(text: &str) -> (String, usize) {
     )
 }
 
-/// Parameters and text of a custom law.
-pub(crate) fn show(ui: &mut Ui, app_state: &AppState, law: &Law, out: &mut Vec<Action>) {
+/// Parameters of a custom law.
+pub(crate) fn parameters(ui: &mut Ui, app_state: &AppState, law: &Law, out: &mut Vec<Action>) {
     let Some(custom) = law.custom() else { return };
     let values = law.values();
     for (parameter, value) in custom.declaration().parameters.iter().zip(values) {
         row(ui, parameter, value, out);
     }
-    let Some(edit) = app_state.law_edit() else { return };
-    let where_it_is = match custom.source() {
-        LawSource::Shipped(name) | LawSource::File(name) => format!("Text of {name}"),
-        LawSource::Scene => "Text".to_owned(),
+    let text =
+        ui.button("Edit its text").on_hover_text("The panel Law text; what compiles takes hold as you type");
+    on_click(&text, Action::ShowPanel("Law text"), out);
+    if app_state.law_edit().is_some_and(|edit| !edit.mistakes.is_empty() || edit.refusal.is_some()) {
+        ui.colored_label(ui.visuals().error_fg_color, "Its text has mistakes: the law before them drives on");
+    }
+}
+
+/// The text of the selected follower's custom law.
+pub fn text(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let follow = app_state.tuned_follower().map(|(_, _, name, follow)| (name, follow));
+    let Some(((name, follow), edit)) = follow.zip(app_state.law_edit()) else {
+        empty_panel(ui, app_state, "The followers have a law of the paper, which has no text.");
+        if app_state.tuned_follower().is_some() {
+            let new = ui.button("New law").on_hover_text("A law of your own, from a template");
+            on_click(&new, Action::ChooseLaw(LawChoice::Text(TEMPLATE.to_owned())), out);
+        }
+        return;
     };
-    egui::CollapsingHeader::new(where_it_is).id_salt("text of the law").default_open(true).show(ui, |ui| {
-        editor(ui, &edit, out);
-    });
+    scope(ui, app_state, name, out);
+    if let Some(LawSource::Shipped(file) | LawSource::File(file)) =
+        follow.law.custom().map(|law| law.source())
+    {
+        ui.weak(format!("From {file}; once it is changed it stands in the scene"));
+    }
+    editor(ui, &edit, out);
 }
 
 /// A slider for a parameter.

@@ -56,7 +56,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         let (law, default) = (&follow.law, Law::fitting(kind));
         custom_law::choice(ui, law, &LAWS, out);
         if law.custom().is_some() {
-            custom_law::show(ui, app_state, law, out);
+            custom_law::parameters(ui, app_state, law, out);
         } else {
             gains(ui, law, &default, out);
         }

@@ -6,7 +6,7 @@ use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use lab::action::{Action, LawChoice};
 use lab::app_state::AppState;
-use lab::panels::{curves, law};
+use lab::panels::{curves, custom_law, law};
 use laws::TEMPLATE;
 
 /// A state whose followers have the law of the template.
@@ -20,7 +20,6 @@ fn custom(samples: usize) -> AppState {
 #[test]
 fn parameters_are_sliders_with_symbol_unit_range_and_a_way_back() {
     let mut panel = panel(custom(2), law::show);
-    assert_says(&panel, &["Text", "Takes hold as you type"]);
     assert!((value(&panel, Role::Slider, "k") - 3.0).abs() < 1e-9);
     assert!((value(&panel, Role::Slider, "d") - 0.8).abs() < 1e-9);
     panel.get_by_role_and_label(Role::Slider, "k").set_value_accesskit(40.0);
@@ -34,6 +33,9 @@ fn parameters_are_sliders_with_symbol_unit_range_and_a_way_back() {
     let back = Action::Tune { what: "Reset k".to_owned(), key: "law.parameters.k".into(), value: None };
     assert_eq!(click(&mut panel, Role::Button, "Reset k"), [back]);
     assert!(panel.get_by_role_and_label(Role::Button, "Reset d").accesskit_node().is_disabled());
+    assert_eq!(click(&mut panel, Role::Button, "Edit its text"), [Action::ShowPanel("Law text")]);
+    let without = super::panel(app_state(THREE, 2), custom_law::text);
+    assert_says(&without, &["a law of the paper", "New law"]);
 }
 
 #[test]
@@ -41,9 +43,9 @@ fn mistakes_are_listed_with_their_places() {
     let mut state = custom(2);
     let wrong = TEMPLATE.replace("2 * d * k * de.x", "leader.bearing");
     assert!(state.act(&Action::EditLaw(wrong.clone())));
-    let panel = panel(state, law::show);
+    let panel = panel(state, custom_law::text);
     let line = wrong.lines().position(|line| line.starts_with("let along")).expect("a line") + 1;
-    assert_says(&panel, &[&format!("{line}:13: ")]);
+    assert_says(&panel, &[&format!("{line}:14: ")]);
     assert!(!says(&panel, "Takes hold"));
 }
 
