@@ -591,7 +591,7 @@ impl<'a> Checker<'a, '_> {
                 let quoted = self.quote(expression);
                 let message = format!(
                     "`{name}` {}, so {quoted} cannot be its derivative: it {}",
-                    target.described(),
+                    self.memory[index].value.described(),
                     value.described()
                 );
                 self.mistake(expression.at, message);
@@ -869,6 +869,9 @@ impl<'a> Checker<'a, '_> {
             };
         }
         let group = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        if group == "own" && group != name {
+            return format!("`{name}` has no number: write `own.speed`");
+        }
         if matches!(group, "leader" | "wanted" | "frame" | "own") {
             let names = names::input_names(1);
             let example = names.iter().find(|input| input.starts_with(group));
@@ -1010,16 +1013,17 @@ impl<'a> Checker<'a, '_> {
         let mark = self.assembler.mark();
         let mut value = self.expression(first);
         let mut at = first.at;
-        for (arithmetic, expression) in rest {
+        for (index, (arithmetic, expression)) in rest.iter().enumerate() {
             let right = self.expression(expression);
-            let both = Expression { kind: ExpressionKind::Broken, at };
+            let before = Expression { kind: ExpressionKind::Broken, at };
+            let left = if index == 0 { first } else { &before };
             at = at.through(expression.at);
             value = match arithmetic {
                 Arithmetic::Plus | Arithmetic::Minus => {
-                    self.sum(*arithmetic, [(&both, value), (expression, right)], mark)
+                    self.sum(*arithmetic, [(left, value), (expression, right)], mark)
                 }
                 Arithmetic::Times | Arithmetic::Over => {
-                    self.product(*arithmetic, [(&both, value), (expression, right)], mark)
+                    self.product(*arithmetic, [(left, value), (expression, right)], mark)
                 }
             };
             if self.is_exhausted() {

@@ -100,7 +100,7 @@ impl<'a> Lexer<'a> {
                 // Comments and blank lines are passed at once, so that each is read once.
                 self.at = self.text.len() - next_code(&rest[1..]).len();
                 if !self.goes_on() {
-                    self.stop(one);
+                    self.stop(Stretch { to: one.from, ..one });
                 }
             }
             ';' => {
