@@ -68,7 +68,7 @@ fn native(input: &Input<'_>, parameters: &[f64; 7], m: &mut [f64; NUMBERS]) -> [
         + beta2 * math::tanh(slope2 * error[1]);
     let across = q * b1;
     let acceleration = cos * b0 - sin * across;
-    let turn_rate = ((sin * b0 + cos * across) / v).max(-11.5).min(11.5);
+    let turn_rate = ((sin * b0 + cos * across) / v).clamp(-11.5, 11.5);
     m[5..].copy_from_slice(&[l, psi, leader.relative.view_angle, v, acceleration, turn_rate]);
     [acceleration, turn_rate]
 }

@@ -164,7 +164,8 @@ impl<'a> Checker<'a, '_> {
     fn mistake(&mut self, at: Stretch, message: impl Into<String>) -> Typed {
         let mut message = message.into();
         if let Some((name, call)) = self.calls.first() {
-            message += &format!(" (in `{name}` as it is called in line {})", self.text.place(call.from).line);
+            let line = self.text.place(call.from).line;
+            message = format!("{message} (in `{name}` as it is called in line {line})");
         }
         self.mistakes.add(at, message);
         Typed::Unknown
@@ -517,9 +518,9 @@ impl<'a> Checker<'a, '_> {
             let quoted = self.quote(expression);
             let mut message = format!("`{name}` {}, {quoted} {}", target.described(), value.described());
             if start.unit == Unit::NUMBER {
-                message += &format!(
-                    "; if `{name}` starts at a plain number, give that a unit: `0 [{}]`",
-                    found.unit
+                let unit = found.unit;
+                message = format!(
+                    "{message}; if `{name}` starts at a plain number, give that a unit: `0 [{unit}]`"
                 );
             }
             self.mistake(expression.at, message);
@@ -604,8 +605,8 @@ impl<'a> Checker<'a, '_> {
             if wanted.unit == Unit::new(0, -1)
                 && let Some(unit) = found.unit.multiply(Unit::new(0, 1))
             {
-                message += &format!(
-                    "; with this derivative, `{name}` starts at a number in {unit}, such as `0 [{unit}]`"
+                message = format!(
+                    "{message}; with this derivative, `{name}` starts at a number in {unit}, such as `0 [{unit}]`"
                 );
             }
             self.mistake(expression.at, message);
@@ -1082,7 +1083,7 @@ impl<'a> Checker<'a, '_> {
         let mut message = format!("{left}, {right}: they cannot be {done}");
         for (this, other) in [(sides[0], sides[1]), (sides[1], sides[0])] {
             if let (ExpressionKind::Number(value, None), Typed::Number(other)) = (&this.0.kind, other.1) {
-                message += &format!("; with a unit it is `{value} [{}]`", other.unit);
+                message = format!("{message}; with a unit it is `{value} [{}]`", other.unit);
             }
         }
         self.mistake(at, message)

@@ -181,8 +181,8 @@ fn operators_and_functions_are_those_of_rust() {
             let after = text[index + c.len_utf8()..].chars().next().map_or(' ', letters);
             let is_alone = before == ' ' && after == ' ' && !text[..index].ends_with('.');
             match c {
-                'x' if is_alone => folded += &format!("({x})"),
-                'y' if is_alone => folded += &format!("({y})"),
+                'x' if is_alone => folded = format!("{folded}({x})"),
+                'y' if is_alone => folded = format!("{folded}({y})"),
                 _ => folded.push(c),
             }
         }
@@ -791,10 +791,10 @@ fn what_is_too_large_is_one_mistake() {
     assert_eq!(mistakes_of(&sines), [""; 0]);
     let sines = format!("let a = time / 1 [s]{}", " + sin(cos(time / 2 [s]))".repeat(4990));
     assert_eq!(mistakes_of(&sines).len(), 1, "{:?}", mistakes_of(&sines));
-    let lets: String = (0..4000).map(|k| format!("let a{k} = time * time\n")).collect();
-    assert_eq!(mistakes_of(&lets), [""; 0]);
-    let lets: String = (0..4200).map(|k| format!("let a{k} = time * time\n")).collect();
-    assert_eq!(mistakes_of(&lets), [large]);
+    let lets =
+        |count: usize| -> Vec<String> { (0..count).map(|k| format!("let a{k} = time * time\n")).collect() };
+    assert_eq!(mistakes_of(&lets(4000).concat()), [""; 0]);
+    assert_eq!(mistakes_of(&lets(4200).concat()), [large]);
     assert_eq!(
         mistakes_of("let a = 0 [s]\nrepeat 1000 { repeat 1000 { a = a + time } }"),
         [
@@ -814,7 +814,8 @@ fn functions_that_double_are_refused_in_time() {
     for last in ["x * x", "1"] {
         let mut text = format!("function f0(x) = {last}\n");
         for k in 1..=30 {
-            text += &format!("function f{k}(x) = f{}(x) + f{}(x)\n", k - 1, k - 1);
+            let before = k - 1;
+            text = format!("{text}function f{k}(x) = f{before}(x) + f{before}(x)\n");
         }
         let found = mistakes_of(&format!("{text}let a = f30(time)"));
         assert_eq!(found.len(), 1, "{found:?}");
