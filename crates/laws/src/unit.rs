@@ -34,6 +34,7 @@ impl Unit {
     }
 
     /// The same unit, shown as that of an angle: "rad/s" in place of "1/s".
+    #[must_use]
     pub const fn angular(self) -> Self {
         Self { radian: 1, ..self }
     }

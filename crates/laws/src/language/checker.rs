@@ -164,7 +164,8 @@ impl<'a> Checker<'a, '_> {
     fn mistake(&mut self, at: Stretch, message: impl Into<String>) -> Typed {
         let mut message = message.into();
         if let Some((name, call)) = self.calls.first() {
-            message += &format!(" (in `{name}` as it is called in line {})", self.text.place(call.from).line);
+            let line = self.text.place(call.from).line;
+            message = format!("{message} (in `{name}` as it is called in line {line})");
         }
         self.mistakes.add(at, message);
         Typed::Unknown
@@ -517,9 +518,9 @@ impl<'a> Checker<'a, '_> {
             let quoted = self.quote(expression);
             let mut message = format!("`{name}` {}, {quoted} {}", target.described(), value.described());
             if start.unit == Unit::NUMBER {
-                message += &format!(
-                    "; if `{name}` starts at a plain number, give that a unit: `0 [{}]`",
-                    found.unit
+                let unit = found.unit;
+                message = format!(
+                    "{message}; if `{name}` starts at a plain number, give that a unit: `0 [{unit}]`"
                 );
             }
             self.mistake(expression.at, message);
@@ -591,7 +592,7 @@ impl<'a> Checker<'a, '_> {
                 let quoted = self.quote(expression);
                 let message = format!(
                     "`{name}` {}, so {quoted} cannot be its derivative: it {}",
-                    target.described(),
+                    self.memory[index].value.described(),
                     value.described()
                 );
                 self.mistake(expression.at, message);
@@ -604,8 +605,8 @@ impl<'a> Checker<'a, '_> {
             if wanted.unit == Unit::new(0, -1)
                 && let Some(unit) = found.unit.multiply(Unit::new(0, 1))
             {
-                message += &format!(
-                    "; with this derivative, `{name}` starts at a number in {unit}, such as `0 [{unit}]`"
+                message = format!(
+                    "{message}; with this derivative, `{name}` starts at a number in {unit}, such as `0 [{unit}]`"
                 );
             }
             self.mistake(expression.at, message);
@@ -869,6 +870,9 @@ impl<'a> Checker<'a, '_> {
             };
         }
         let group = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        if group == "own" && group != name {
+            return format!("`{name}` has no number: write `own.speed`");
+        }
         if matches!(group, "leader" | "wanted" | "frame" | "own") {
             let names = names::input_names(1);
             let example = names.iter().find(|input| input.starts_with(group));
@@ -1010,16 +1014,17 @@ impl<'a> Checker<'a, '_> {
         let mark = self.assembler.mark();
         let mut value = self.expression(first);
         let mut at = first.at;
-        for (arithmetic, expression) in rest {
+        for (index, (arithmetic, expression)) in rest.iter().enumerate() {
             let right = self.expression(expression);
-            let both = Expression { kind: ExpressionKind::Broken, at };
+            let before = Expression { kind: ExpressionKind::Broken, at };
+            let left = if index == 0 { first } else { &before };
             at = at.through(expression.at);
             value = match arithmetic {
                 Arithmetic::Plus | Arithmetic::Minus => {
-                    self.sum(*arithmetic, [(&both, value), (expression, right)], mark)
+                    self.sum(*arithmetic, [(left, value), (expression, right)], mark)
                 }
                 Arithmetic::Times | Arithmetic::Over => {
-                    self.product(*arithmetic, [(&both, value), (expression, right)], mark)
+                    self.product(*arithmetic, [(left, value), (expression, right)], mark)
                 }
             };
             if self.is_exhausted() {
@@ -1078,7 +1083,7 @@ impl<'a> Checker<'a, '_> {
         let mut message = format!("{left}, {right}: they cannot be {done}");
         for (this, other) in [(sides[0], sides[1]), (sides[1], sides[0])] {
             if let (ExpressionKind::Number(value, None), Typed::Number(other)) = (&this.0.kind, other.1) {
-                message += &format!("; with a unit it is `{value} [{}]`", other.unit);
+                message = format!("{message}; with a unit it is `{value} [{}]`", other.unit);
             }
         }
         self.mistake(at, message)

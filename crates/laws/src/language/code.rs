@@ -91,6 +91,7 @@ impl Operation {
 
     /// What it makes of its sources; jumps and noise make nothing.
     #[inline(always)]
+    #[expect(clippy::inline_always, reason = "the interpreter is one match over all operations")]
     pub(super) fn value(self, a: f64, b: f64, c: f64) -> f64 {
         match self {
             O::Move => a,

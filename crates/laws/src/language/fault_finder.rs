@@ -33,7 +33,7 @@ pub(super) fn fault_of_step(
             return fault;
         }
         let value = trace.registers[usize::from(number)];
-        if !change.next(value, input.period, &trace.registers[..]).is_finite() {
+        if !change.next(value, input.period, &trace.registers).is_finite() {
             return fault_of_memory(law, text, index, "grows beyond all numbers");
         }
     }
@@ -74,7 +74,7 @@ enum Cause {
 /// A run, with what made each number that is not finite.
 struct Trace<'a> {
     code: &'a Code,
-    registers: Box<[f64; REGISTERS_MAX]>,
+    registers: Vec<f64>,
     causes: Vec<Option<Cause>>,
 }
 
@@ -90,14 +90,16 @@ impl Watch for Vec<Option<Cause>> {
 
 impl<'a> Trace<'a> {
     fn of(code: &'a Code, input: &Input<'_>, parameters: &[f64], memory: &[f64]) -> Self {
-        let mut registers = Box::new([0.0; REGISTERS_MAX]);
-        code.fill(&mut registers[..], input, parameters, memory);
+        let mut registers = vec![0.0; REGISTERS_MAX];
+        code.fill(&mut registers, input, parameters, memory);
         let given = registers
             .iter()
             .enumerate()
             .map(|(register, value)| (!value.is_finite()).then_some(Cause::Given(register as u16, *value)));
         let mut causes: Vec<Option<Cause>> = given.collect();
-        run(code, &mut registers, input.noise, &mut causes);
+        if let Some(registers) = registers.first_chunk_mut::<REGISTERS_MAX>() {
+            run(code, registers, input.noise, &mut causes);
+        }
         Self { code, registers, causes }
     }
 

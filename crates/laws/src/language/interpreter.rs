@@ -11,7 +11,7 @@ pub(super) trait Watch {
 
 /// Nobody looks on.
 impl Watch for () {
-    #[inline(always)]
+    #[inline]
     fn before(&mut self, _: usize, _: &Instruction, _: f64, _: &[f64]) {}
 }
 

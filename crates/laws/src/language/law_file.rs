@@ -41,7 +41,7 @@ impl LawFile {
             return Err(mistakes.in_order(law_text));
         }
         let syntax = parse(law_text, &mut mistakes);
-        match check(law_text, &syntax, &mut mistakes) {
+        match syntax.and_then(|syntax| check(law_text, &syntax, &mut mistakes)) {
             Some(law) if mistakes.is_empty() => Ok(Self { text: text.to_owned(), law }),
             _ => Err(mistakes.in_order(law_text)),
         }

@@ -23,10 +23,11 @@ struct Lost;
 
 type Parsed<T> = Result<T, Lost>;
 
-/// Reads a file; what cannot be read is noted in `mistakes`.
-pub(super) fn parse<'a>(text: LawText<'a>, mistakes: &mut MistakeList) -> LawSyntax<'a> {
+/// Reads a file; what cannot be read is noted in `mistakes`. Nothing where it was not read to its end.
+pub(super) fn parse<'a>(text: LawText<'a>, mistakes: &mut MistakeList) -> Option<LawSyntax<'a>> {
     let tokens = tokens(text, mistakes);
-    let mut parser = Parser { text, tokens: &tokens, at: 0, depth: 0, mistakes, set: HashSet::new() };
+    let mut parser =
+        Parser { text, tokens: &tokens, at: 0, depth: 0, mistakes, set: HashSet::new(), is_abandoned: false };
     let mut law = LawSyntax::default();
     let mut ended = false;
     while parser.kind() != TokenKind::End && !parser.mistakes.is_full() {
@@ -52,7 +53,8 @@ pub(super) fn parse<'a>(text: LawText<'a>, mistakes: &mut MistakeList) -> LawSyn
         parser.note("a law ends with what it asks for: `command = acceleration, turn_rate`");
     }
     law.set = parser.set;
-    law
+    let is_whole = !parser.is_abandoned && !parser.mistakes.is_full();
+    is_whole.then_some(law)
 }
 
 struct Parser<'a, 't> {
@@ -62,6 +64,8 @@ struct Parser<'a, 't> {
     depth: usize,
     mistakes: &'t mut MistakeList,
     set: HashSet<&'a str>,
+    /// Whether the rest of the text is not read, and nothing is said of it.
+    is_abandoned: bool,
 }
 
 impl<'a> Parser<'a, '_> {
@@ -84,8 +88,14 @@ impl<'a> Parser<'a, '_> {
         from.through(before)
     }
 
+    fn mistake(&mut self, at: Stretch, message: impl Into<String>) {
+        if !self.is_abandoned {
+            self.mistakes.add(at, message);
+        }
+    }
+
     fn note(&mut self, message: impl Into<String>) {
-        self.mistakes.add(self.here(), message);
+        self.mistake(self.here(), message);
     }
 
     fn lost<T>(&mut self, message: impl Into<String>) -> Parsed<T> {
@@ -183,7 +193,10 @@ impl<'a> Parser<'a, '_> {
     /// One level deeper.
     fn deeper<T>(&mut self, read: impl FnOnce(&mut Self) -> Parsed<T>) -> Parsed<T> {
         if self.depth >= DEPTH_MAX {
-            return self.lost(format!("this is nested too deeply: there may be {DEPTH_MAX} levels"));
+            self.note(format!("this is nested too deeply: there may be {DEPTH_MAX} levels"));
+            self.is_abandoned = true;
+            self.at = self.tokens.len() - 1;
+            return Err(Lost);
         }
         self.depth += 1;
         let read = read(self);
@@ -203,7 +216,7 @@ impl<'a> Parser<'a, '_> {
                 let known = law.leaders.is_some();
                 let leaders = self.leaders()?;
                 if known {
-                    self.mistakes.add(at, "the number of leaders is said twice");
+                    self.mistake(at, "the number of leaders is said twice");
                 }
                 law.leaders = Some(leaders);
             }
@@ -252,7 +265,7 @@ impl<'a> Parser<'a, '_> {
                 self.statement(&mut block)?;
                 law.statements.append(&mut block.statements);
                 if let Some(value) = block.value {
-                    self.mistakes.add(value.at, "this value is not used: name it, `let x = …`");
+                    self.mistake(value.at, "this value is not used: name it, `let x = …`");
                 }
                 return Ok(());
             }
@@ -265,7 +278,7 @@ impl<'a> Parser<'a, '_> {
             return Ok(());
         }
         let value = self.expression()?;
-        self.mistakes.add(value.at, "this value is not used: name it, `let x = …`");
+        self.mistake(value.at, "this value is not used: name it, `let x = …`");
         self.end_of_statement()
     }
 
@@ -344,16 +357,16 @@ impl<'a> Parser<'a, '_> {
                 if let Some(other) = self.unit()
                     && other != (unit, scale)
                 {
-                    self.mistakes.add(
+                    self.mistake(
                         self.since(from),
                         "the range is in the unit of the parameter: leave its unit out",
                     );
                 }
                 let at = self.since(from);
                 if low >= high {
-                    self.mistakes.add(at, "the range should go from the smaller to the larger value");
+                    self.mistake(at, "the range should go from the smaller to the larger value");
                 } else if !(low..=high).contains(&default) {
-                    self.mistakes.add(default_at, format!("{default} is not in the range {low} .. {high}"));
+                    self.mistake(default_at, format!("{default} is not in the range {low} .. {high}"));
                 }
                 range = Some((low, at));
                 parameter.range = [low * scale, high * scale];
@@ -374,9 +387,9 @@ impl<'a> Parser<'a, '_> {
             }
         }
         match range {
-            None => self.mistakes.add(at, "a parameter has a range for its slider: `in 0.1 .. 20`"),
+            None => self.mistake(at, "a parameter has a range for its slider: `in 0.1 .. 20`"),
             Some((low, at)) if parameter.scale == Scale::Logarithmic && low <= 0.0 => {
-                self.mistakes.add(at, "a range with `log` begins above 0");
+                self.mistake(at, "a range with `log` begins above 0");
             }
             Some(_) => {}
         }
@@ -390,7 +403,7 @@ impl<'a> Parser<'a, '_> {
         while !self.is(")") {
             let argument = self.new_name()?;
             if arguments.contains(&argument.name) {
-                self.mistakes.add(argument.at, format!("`{}` is there twice", argument.name));
+                self.mistake(argument.at, format!("`{}` is there twice", argument.name));
             }
             arguments.push(argument.name);
             if !self.is(",") {
@@ -430,7 +443,7 @@ impl<'a> Parser<'a, '_> {
                     TokenKind::Stop => parser.at += 1,
                     TokenKind::Sign("}") => break,
                     TokenKind::End => {
-                        parser.mistakes.add(from, "the `}` for this is missing");
+                        parser.mistake(from, "the `}` for this is missing");
                         return Err(Lost);
                     }
                     _ => {

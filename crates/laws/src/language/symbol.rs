@@ -45,7 +45,7 @@ pub(super) fn symbol(name: &str) -> String {
     let mut symbol = letter.to_owned() + &lowered(&head[stem.len()..]);
     match tail {
         Some(digits) if !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()) => {
-            symbol += &lowered(digits)
+            symbol += &lowered(digits);
         }
         Some(words) => symbol = symbol + "_" + words,
         None => {}

@@ -100,7 +100,7 @@ impl<'a> Lexer<'a> {
                 // Comments and blank lines are passed at once, so that each is read once.
                 self.at = self.text.len() - next_code(&rest[1..]).len();
                 if !self.goes_on() {
-                    self.stop(one);
+                    self.stop(Stretch { to: one.from, ..one });
                 }
             }
             ';' => {
@@ -110,23 +110,20 @@ impl<'a> Lexer<'a> {
             '#' => self.at += rest.find('\n').unwrap_or(rest.len()),
             '"' => {
                 let line = rest.find(['\n', '\r']).unwrap_or(rest.len());
-                match rest[1..line].find('"') {
-                    Some(length) => self.push(TokenKind::Quoted(&rest[1..=length]), length + 2),
-                    None => {
-                        mistakes
-                            .add(Stretch { from: self.at, to: self.at + line }, "the second `\"` is missing");
-                        self.push(TokenKind::Quoted(&rest[1..line]), line);
-                    }
+                if let Some(length) = rest[1..line].find('"') {
+                    self.push(TokenKind::Quoted(&rest[1..=length]), length + 2);
+                } else {
+                    mistakes.add(Stretch { from: self.at, to: self.at + line }, "the second `\"` is missing");
+                    self.push(TokenKind::Quoted(&rest[1..line]), line);
                 }
             }
             '[' => {
                 let line = rest.find(['\n', '\r']).unwrap_or(rest.len());
-                match rest[..line].find(']') {
-                    Some(length) => self.push(TokenKind::Unit(&rest[1..length]), length + 1),
-                    None => {
-                        mistakes.add(one, "the `]` behind the unit is missing");
-                        self.push(TokenKind::Unit("-"), line);
-                    }
+                if let Some(length) = rest[..line].find(']') {
+                    self.push(TokenKind::Unit(&rest[1..length]), length + 1);
+                } else {
+                    mistakes.add(one, "the `]` behind the unit is missing");
+                    self.push(TokenKind::Unit("-"), line);
                 }
             }
             '0'..='9' => self.number(mistakes),
@@ -136,9 +133,10 @@ impl<'a> Lexer<'a> {
                 let length = rest.find(|c| !continues_name(c)).unwrap_or(rest.len());
                 self.push(TokenKind::Name(&rest[..length]), length);
             }
-            _ => match SIGNS.iter().find(|(typed, _)| rest.starts_with(typed)) {
-                Some((typed, meant)) => self.sign(meant, typed.len()),
-                None => {
+            _ => {
+                if let Some((typed, meant)) = SIGNS.iter().find(|(typed, _)| rest.starts_with(typed)) {
+                    self.sign(meant, typed.len());
+                } else {
                     let hint = match first {
                         '%' | '\\' => ": comments begin with `#`",
                         '&' => ": write `and`",
@@ -152,7 +150,7 @@ impl<'a> Lexer<'a> {
                     mistakes.add(one, format!("{shown} has no meaning here{hint}"));
                     self.at = one.to;
                 }
-            },
+            }
         }
     }
 
