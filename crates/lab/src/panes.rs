@@ -115,14 +115,13 @@ pub fn toggle(tree: &mut Tree<Pane>, name: &str) {
 /// Brings a panel to the front.
 pub fn bring(tree: &mut Tree<Pane>, name: &str) {
     let Some(pane) = Pane::named(name) else { return };
-    match tree.tiles.find_pane(&pane) {
-        Some(id) => tree.set_visible(id, true),
-        None => {
-            let id = tree.tiles.insert_pane(pane);
-            let tabs = tree.tiles.insert_tab_tile(vec![id]);
-            if let Some(root) = tree.root() {
-                tree.move_tile_to_container(tabs, root, usize::MAX, false);
-            }
+    if let Some(id) = tree.tiles.find_pane(&pane) {
+        tree.set_visible(id, true);
+    } else {
+        let id = tree.tiles.insert_pane(pane);
+        let tabs = tree.tiles.insert_tab_tile(vec![id]);
+        if let Some(root) = tree.root() {
+            tree.move_tile_to_container(tabs, root, usize::MAX, false);
         }
     }
     tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == pane));

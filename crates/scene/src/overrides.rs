@@ -148,9 +148,10 @@ fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Repor
     };
     if let [key] = rest {
         let replaced: Vec<_> = replaced_by(part.text, key.text).collect();
-        if let (false, Value::Table(entries)) = (replaced.is_empty(), &mut node.value) {
-            let table = entries.iter_mut().find(|entry| entry.key == part.text);
-            table.into_iter().for_each(|entry| entry.node.leave_out(&replaced));
+        if let (false, Value::Table(entries)) = (replaced.is_empty(), &mut node.value)
+            && let Some(table) = entries.iter_mut().find(|entry| entry.key == part.text)
+        {
+            table.node.leave_out(&replaced);
         }
     }
     match &mut node.value {

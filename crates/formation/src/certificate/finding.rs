@@ -112,6 +112,7 @@ impl StatementFinding {
 
 /// What a run's making says about premises, besides what samples show.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each bears on other premises")]
 pub struct Circumstances {
     /// The period over which the law is held, s; `None` in continuous time.
     pub held: Option<f64>,

@@ -9,7 +9,7 @@ use crate::numbers::toml_number;
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{self, Color32, ComboBox, FontId, RichText, ScrollArea, Slider, Stroke, TextEdit, Ui};
 use laws::{CustomLaw, LawFile, Mistake, Parameter, Place, SHIPPED_LAWS, Scale, TEMPLATE};
-use scene::{Law, LawSource};
+use scene::{Law, LawSource, WrittenLaw};
 use vocabulary::LawKind;
 
 /// Most mistakes that are listed under the text.
@@ -38,7 +38,7 @@ pub(crate) fn choice(ui: &mut Ui, law: &Law, built_in: &[(LawKind, &str, &str)],
         let new = ui.selectable_label(false, "New law…").on_hover_text("A law of your own, from a template");
         on_click(&new, Action::ChooseLaw(LawChoice::Text(TEMPLATE.to_owned())), out);
         ui.separator();
-        let source = law.custom().map(|custom| custom.source());
+        let source = law.custom().map(WrittenLaw::source);
         for shipped in SHIPPED_LAWS.iter().filter(|shipped| title(shipped.text).1 == 1) {
             let now = source == Some(&LawSource::Shipped(shipped.name.to_owned()));
             let tip = format!("Law file {}", shipped.name);
@@ -87,7 +87,7 @@ pub fn text(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     };
     scope(ui, app_state, name, out);
     if let Some(LawSource::Shipped(file) | LawSource::File(file)) =
-        follow.law.custom().map(|law| law.source())
+        follow.law.custom().map(WrittenLaw::source)
     {
         ui.weak(format!("From {file}; once it is changed it stands in the scene"));
     }

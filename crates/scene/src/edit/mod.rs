@@ -44,7 +44,7 @@ fn embed(item: &mut Item, texts: &BTreeMap<String, String>) {
         return;
     }
     if let Some(table) = item.as_table_like_mut() {
-        table.iter_mut().for_each(|(key, item)| embed_in(&key.get().to_owned(), item, texts));
+        table.iter_mut().for_each(|(key, item)| embed_in(key.get(), item, texts));
     }
 }
 
