@@ -82,6 +82,7 @@ fn outcome(certificate: &Certificate, statement: Statement) -> StatementOutcome 
 fn word(premise: &Premise) -> &'static str {
     match premise {
         Premise::FullState => "full-state",
+        Premise::CustomLaw => "custom-law",
         Premise::NoObserver => "no-observer",
         Premise::SeveralLeaders => "several-leaders",
         Premise::Smoothed => "tanh",

@@ -1,64 +1,25 @@
-//! A robot that keeps its distances to two others: what whole runs show, with a law in Rust.
+//! A robot that keeps its distances to two others: what whole runs show.
 
-use formation::Custom;
-use laws::{CustomLaw, Declaration, Fault, Input, Knowledge};
 use metrics::{Digest, Metrics, MetricsBuilder};
 use recording::log::{FILE, Log};
 use recording::{Recorder, Status};
-use scene::{Leader, Role, Scene};
-use simulation::{Setup, Simulation, build, in_line};
-use std::sync::Arc;
+use scene::{Role, Scene};
+use simulation::{Simulation, build, in_line};
 use studies::certify::Examiner;
-use vocabulary::{Command, EventKind, Refusal, ScalarTrajectory, StepRecord, math};
+use vocabulary::{EventKind, Refusal, ScalarTrajectory, StepRecord};
 
-/// ℓ-ℓ control: both distances have the dynamics of a spring, each as if its leader drove straight on.
-#[derive(Debug)]
-struct TwoDistances(Declaration);
-
-impl TwoDistances {
-    fn new() -> Arc<Self> {
-        Arc::new(Self(Declaration { leaders: 2, knows: Knowledge::Rates, ..Declaration::default() }))
-    }
-}
-
-/// 1/s.
-const RATE: f64 = 2.0;
-
-impl CustomLaw for TwoDistances {
-    fn declaration(&self) -> &Declaration {
-        &self.0
-    }
-
-    fn start(&self, _: &Input<'_>, _: &[f64], _: &mut [f64]) -> Result<(), Fault> {
-        Ok(())
-    }
-
-    fn decide(&self, input: &Input<'_>, _: &[f64], _: &mut [f64], _: &mut [f64]) -> Result<Command, Fault> {
-        let [first, second] = input.leaders else { return Err(fault("it has two leaders")) };
-        let wish = [first, second].map(|leader| {
-            let error = leader.relative.distance - leader.wanted.value[0];
-            -RATE * RATE * error - 2.0 * RATE * leader.rates[0]
-        });
-        // In the follower's frame the lines from its leaders point to γ.
-        let [(s1, c1), (s2, c2)] = [first, second].map(|leader| math::sin_cos(leader.relative.view_angle));
-        let area = c1 * s2 - s1 * c2;
-        if area.abs() < 1e-3 {
-            return Err(fault("it is in line with its leaders"));
-        }
-        Ok(Command {
-            acceleration: (wish[0] * s2 - wish[1] * s1) / area,
-            turn_rate: (c1 * wish[1] - c2 * wish[0]) / area / input.own_speed,
-        })
-    }
-
-    fn derive(&self, input: &Input<'_>, _: &[f64], memory: &[f64], _: &mut [f64]) -> Result<Command, Fault> {
-        self.decide(input, &[], &mut memory.to_vec(), &mut [])
-    }
-}
-
-fn fault(message: &str) -> Fault {
-    Fault { place: None, message: message.to_owned() }
-}
+/// ℓ-ℓ control: both distances have the dynamics of a spring, each as if its leader drove straight on. It knows what its
+/// follower measures.
+const LAW: &str = r"
+leaders 2
+parameter k = 2 [1/s] in 0.1 .. 10
+let w1 = -k^2 * (leader1.distance - wanted1.distance) - 2 * k * leader1.distance_rate
+let w2 = -k^2 * (leader2.distance - wanted2.distance) - 2 * k * leader2.distance_rate
+let g1 = (cos(leader1.view_angle), sin(leader1.view_angle))
+let g2 = (cos(leader2.view_angle), sin(leader2.view_angle))
+let area = g1.x * g2.y - g1.y * g2.x
+command = (w1 * g2.y - w2 * g1.y) / area, (g1.x * w2 - g2.x * w1) / area / own.speed
+";
 
 /// A diamond: `ann` leads, `bob` and `cy` follow it, `dan` keeps its distances to both.
 fn scene(more: &str) -> Scene {
@@ -93,48 +54,17 @@ speed = 0.6
 [[robots]]
 name = "dan"
 pose = [-3.0, 0.3, 0.0]
-leader = "bob"
-distance = 2.0
-bearing = "-135 deg"
 speed = 0.6
+law = {{ text = """{LAW}""" }}
+leaders = [{{ name = "bob", distance = 2.0 }}, {{ name = "cy", distance = 2.0 }}]
 {more}
 "#
     );
-    let mut scene = Scene::parse(&text, "t.toml", &[]).unwrap_or_else(|fault| panic!("{fault}")).scene;
-    scene.for_every_robot(|robot| {
-        let Role::Follow(follow) = &mut robot.role else { return };
-        if robot.name == "dan" {
-            follow.leaders.first.bearing = None;
-            let distance = Some(ScalarTrajectory::Constant(2.0));
-            follow.leaders.also.push(Leader { name: "cy".to_owned(), distance, bearing: None });
-        }
-    });
-    scene
-}
-
-fn setup(scene: &Scene) -> Setup {
-    let mut setup = build(scene).expect("a run");
-    let custom = Custom { law: TwoDistances::new(), parameters: vec![] };
-    let dan = scene.index_of("dan").expect("dan");
-    let own = |index: &usize| setup.formation.edges()[*index].follower == dan;
-    let own: Vec<usize> = (0..setup.formation.edges().len()).filter(own).collect();
-    let give = |laws: &mut [formation::EdgeLaw]| {
-        for index in &own {
-            laws[*index].custom = Some(custom.clone());
-        }
-    };
-    let limits = (0..scene.robots.len()).map(|robot| *setup.formation.limits(robot)).collect();
-    let mut laws = setup.formation.laws().to_vec();
-    give(&mut laws);
-    setup.formation.apply_parameters(laws, limits);
-    for change in &mut setup.changes {
-        give(&mut change.parameters.laws);
-    }
-    setup
+    Scene::parse(&text, "t.toml", &[]).unwrap_or_else(|fault| panic!("{fault}")).scene
 }
 
 fn simulation(scene: &Scene) -> Simulation {
-    Simulation::new(setup(scene))
+    Simulation::new(build(scene).expect("a run"))
 }
 
 fn run(scene: &Scene, mut visit: impl FnMut(&StepRecord)) -> (Metrics, String) {
@@ -153,7 +83,7 @@ fn run(scene: &Scene, mut visit: impl FnMut(&StepRecord)) -> (Metrics, String) {
 #[test]
 fn a_robot_keeps_its_distances_to_two_others() {
     let scene = scene("");
-    let fleet = setup(&scene).fleet;
+    let fleet = build(&scene).expect("a run").fleet;
     assert_eq!(fleet.free, [[false; 2], [false; 2], [false, true], [false, true]]);
     assert_eq!(fleet.several_leaders(), [false, false, false, true]);
     let (metrics, _) = run(&scene, |record| {
@@ -222,11 +152,8 @@ fn measurements_of_two_leaders_have_errors_of_their_own() {
 
 #[test]
 fn a_change_of_one_distance_takes_hold() {
-    let mut scene = scene("[[changes]]\nat = 4.0\nset = [\"robots.bob.distance=2.1\"]");
-    // The list of a change is written for one leader; what it leads to is edited here.
-    let then = &mut scene.changes[0].then;
-    let Role::Follow(follow) = &mut then.robots[3].role else { panic!("dan follows") };
-    follow.leaders.first.distance = Some(ScalarTrajectory::Constant(1.8));
+    let scene = scene("[[changes]]\nat = 4.0\nset = [\"robots.dan.leaders.bob.distance=1.8\"]");
+    assert_eq!(scene.changes[0].set, ["robots.dan.leaders.bob.distance=1.8"]);
     let mut wanted = vec![];
     let (metrics, digest) = run(&scene, |record| wanted.push(record.edges[2].set_point[0]));
     assert_eq!((wanted[399], wanted[400]), (2.0, 1.8));

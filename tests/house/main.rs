@@ -59,6 +59,7 @@ const ARROWS: [(&str, &[&str]); 20] = [
         &[
             "vocabulary",
             "output",
+            "laws",
             "scene",
             "formation",
             "simulation",

@@ -1,16 +1,58 @@
 //! A custom law as one follower uses it, and what it carries from sample to sample.
 
-use laws::{CustomLaw, Fault, Input};
+use laws::{CustomLaw, Declaration, Fault, Input, Quantity};
 use std::sync::Arc;
-use vocabulary::Command;
+use vocabulary::{Command, LawQuantity, LawState};
 
 /// A custom law and its parameters.
 #[derive(Debug, Clone)]
 pub struct Custom {
+    name: String,
+    law: Arc<dyn CustomLaw>,
+    parameters: Vec<f64>,
+    quantities: Arc<[LawQuantity]>,
+}
+
+/// Two are the same where their law is the same piece and their parameters are equal.
+impl PartialEq for Custom {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.law, &other.law) && self.parameters == other.parameters
+    }
+}
+
+impl Custom {
+    /// A law that messages call `name`, and its parameters in the order of its declaration.
+    pub fn new(name: impl Into<String>, law: Arc<dyn CustomLaw>, parameters: Vec<f64>) -> Self {
+        let Declaration { memory, shown, .. } = law.declaration();
+        let quantity = |own: &Quantity| LawQuantity { name: own.name.clone(), unit: own.unit.to_string() };
+        let quantities = memory.iter().chain(shown).map(quantity).collect();
+        Self { name: name.into(), law, parameters, quantities }
+    }
+
     /// The law.
-    pub law: Arc<dyn CustomLaw>,
+    pub fn law(&self) -> &dyn CustomLaw {
+        &*self.law
+    }
+
     /// Its parameters, in the order of its declaration.
-    pub parameters: Vec<f64>,
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// What `state` holds, of the follower number `robot`, for records.
+    pub fn record(&self, robot: usize, state: &CustomState, out: &mut LawState) {
+        out.robot = robot;
+        out.quantities.clone_from(&self.quantities);
+        out.values.clear();
+        out.values.extend_from_slice(&state.memory);
+        out.values.extend_from_slice(&state.shown);
+        out.values.resize(self.quantities.len(), 0.0);
+        out.fault.clear();
+        if let Some(fault) = &state.fault {
+            let mark = if fault.place.is_some() { ":" } else { ": " };
+            out.fault = format!("{}{mark}{fault}", self.name);
+        }
+    }
 }
 
 /// What a follower carries for its custom law.

@@ -423,7 +423,16 @@ impl Formation {
         let own_speed = seen.own_speed.max(slowest);
         let truth = || law.rates(&geometry, own_speed, &leader).into();
         let rates = parameters.rates_of(&state.estimates[index], truth);
-        EdgeView { geometry, output, place, set_point, rates, own_speed, leader }
+        EdgeView {
+            geometry,
+            output,
+            bearing: seen.relative.bearing,
+            place,
+            set_point,
+            rates,
+            own_speed,
+            leader,
+        }
     }
 
     /// The command that a custom law asks for on the edges of its follower; `None` where it has broken off.
@@ -496,6 +505,8 @@ struct EdgeView {
     geometry: Geometry,
     /// What the law works on.
     output: Relative,
+    /// Bearing from the leader's own heading, rad.
+    bearing: f64,
     /// s^d against the heading it is held against.
     place: SetPoint,
     /// s^d of what the law works on.
@@ -528,6 +539,7 @@ impl EdgeView {
                 Heading::Leader => [self.leader.turn_rate, self.leader.turn_acceleration],
                 Heading::Path(_) => [0.0; 2],
             },
+            heading: wrap(self.output.bearing - self.bearing),
         }
     }
 }
@@ -559,7 +571,7 @@ const DIVIDES_BY: f64 = 0.01;
 impl EdgeLaw {
     /// What the follower's law has to know of its leader.
     pub fn knows(&self) -> Knowledge {
-        self.custom.as_ref().map_or(self.law.knows(), |custom| custom.law.declaration().knows)
+        self.custom.as_ref().map_or(self.law.knows(), |custom| custom.law().declaration().knows)
     }
 
     /// Whether the follower's law takes the rates of distance and bearing from its observer.
@@ -922,7 +934,7 @@ mod tests {
             [("a", "b")].into_iter().chain(leaders.iter().map(|leader| (*leader, "c"))).collect();
         formation.graph = Graph::new(&["a", "b", "c"], &pairs).expect("a graph");
         let edge = formation.edges[1].clone();
-        let custom = Some(Custom { law: Counting::new(leaders.len()), parameters: vec![3.0] });
+        let custom = Some(Custom::new("counting", Counting::new(leaders.len()), vec![3.0]));
         formation.edges.truncate(1);
         formation.edges.extend(leaders.iter().map(|_| EdgeLaw { custom: custom.clone(), ..edge.clone() }));
         formation.edges[leaders.len()].free = [false, true];
@@ -962,11 +974,10 @@ mod tests {
         assert_eq!(decide(&formation, 2), (braking, true, true, 3.0));
         assert_eq!(decide(&formation, 3), (braking, false, true, 3.0));
         // With other parameters it goes on where it was; another law with the same memory takes that over.
-        let custom = |bound| Some(Custom { law: Counting::new(1), parameters: vec![bound] });
-        let law = formation.edges[1].custom.as_mut().expect("a law");
-        law.parameters[0] = 4.0;
+        let law = Counting::new(1);
+        formation.edges[1].custom = Some(Custom::new("counting", law.clone(), vec![4.0]));
         assert_eq!(decide(&formation, 4), (Command { acceleration: 0.5, turn_rate: 4.0 }, false, false, 4.0));
-        formation.edges[1].custom = custom(9.0);
+        formation.edges[1].custom = Some(Custom::new("counting", law, vec![9.0]));
         assert_eq!(decide(&formation, 5).3, 5.0);
     }
 

@@ -2,7 +2,9 @@
 
 use crate::app_state::{Selection, Tool};
 use scene::Failure;
+use std::borrow::Cow;
 use std::path::PathBuf;
+use vocabulary::LawKind;
 
 /// What happens to a robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,6 +17,17 @@ pub enum Happens {
     Fails(Failure),
     /// Those who follow it take their places anew.
     Assigns,
+}
+
+/// A law of a follower.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LawChoice {
+    /// One of the paper's.
+    BuiltIn(LawKind),
+    /// One that comes with the program.
+    Shipped(&'static str),
+    /// One whose text stands in the scene.
+    Text(String),
 }
 
 /// A command of the user.
@@ -58,10 +71,14 @@ pub enum Action {
         /// For undo and the log; a `…` at its end marks an edit in progress.
         what: String,
         /// Its key, without the robot.
-        key: &'static str,
+        key: Cow<'static, str>,
         /// TOML; `None` for its default.
         value: Option<String>,
     },
+    /// Give the selected follower, or all followers, another law.
+    ChooseLaw(LawChoice),
+    /// Edit the text of the custom law of the selected follower.
+    EditLaw(String),
     /// Whether gain changes apply to all followers.
     ForAll(bool),
     /// Whether the mirror image of a set point moves with it.
@@ -161,6 +178,8 @@ pub enum Action {
     Element(&'static str, bool),
     /// Show or hide a panel by its name.
     Panel(&'static str),
+    /// Bring a panel by its name to the front.
+    ShowPanel(&'static str),
     /// Switch between the light and the dark theme.
     Theme,
     /// Set the zoom of the interface; 1 is normal.

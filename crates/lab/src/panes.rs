@@ -3,7 +3,7 @@
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::panels::{
-    branches, certificates, curves, edge, film, formation, law, log, safety, sensing, world,
+    branches, certificates, curves, custom_law, edge, film, formation, law, log, safety, sensing, world,
 };
 use crate::quantities::PlotQuantity;
 use eframe::egui::{ComboBox, Frame, Id, Panel, ScrollArea, Ui, WidgetText};
@@ -42,6 +42,8 @@ pub const PANES: &[(&str, Draw)] = &[
     ("Certificates", |ui, on| certificates::show(ui, on.app_state, on.out)),
     ("Safety", |ui, on| safety::show(ui, on.app_state, on.out)),
     ("Barriers", |ui, on| safety::plots(ui, on.app_state, on.out)),
+    ("Law text", |ui, on| custom_law::text(ui, on.app_state, on.out)),
+    ("Signals", |ui, on| curves::signals(ui, on.app_state, on.out)),
 ];
 
 impl Pane {
@@ -66,11 +68,13 @@ pub fn arrangement() -> Tree<Pane> {
     };
     let view = tabs(&["View"]);
     let (formation, edge) = (tabs(&["Formation"]), tabs(&["Edge", "Branches"]));
-    let (law, more) =
-        (tabs(&["Law", "Observer", "Limits", "Safety"]), tabs(&["Sensing", "World", "Film", "Log"]));
+    let (law, more) = (
+        tabs(&["Law", "Observer", "Limits", "Safety"]),
+        tabs(&["Sensing", "World", "Film", "Log", "Law text"]),
+    );
     let plots = [
         tabs(&["Errors"]),
-        tabs(&["Commands", "Speeds", "Barriers"]),
+        tabs(&["Commands", "Speeds", "Barriers", "Signals"]),
         tabs(&["Observer error"]),
         tabs(&["Energy", "Certificates", "Clearance"]),
     ];
@@ -104,13 +108,20 @@ pub fn toggle(tree: &mut Tree<Pane>, name: &str) {
         Some(id) if pane.0 != 0 && tree.is_visible(id) => {
             tree.remove_recursively(id);
         }
-        Some(id) => tree.set_visible(id, true),
-        None => {
-            let id = tree.tiles.insert_pane(pane);
-            let tabs = tree.tiles.insert_tab_tile(vec![id]);
-            if let Some(root) = tree.root() {
-                tree.move_tile_to_container(tabs, root, usize::MAX, false);
-            }
+        _ => bring(tree, name),
+    }
+}
+
+/// Brings a panel to the front.
+pub fn bring(tree: &mut Tree<Pane>, name: &str) {
+    let Some(pane) = Pane::named(name) else { return };
+    if let Some(id) = tree.tiles.find_pane(&pane) {
+        tree.set_visible(id, true);
+    } else {
+        let id = tree.tiles.insert_pane(pane);
+        let tabs = tree.tiles.insert_tab_tile(vec![id]);
+        if let Some(root) = tree.root() {
+            tree.move_tile_to_container(tabs, root, usize::MAX, false);
         }
     }
     tree.make_active(|_, tile| matches!(tile, Tile::Pane(p) if *p == pane));

@@ -1,6 +1,7 @@
 //! Curves over time, computed from records, for plots and exports.
 
 use crate::app_state::AppState;
+use crate::session::history::History;
 use formation::energy::{ObserverError, observer_energy, tracking_energy};
 use formation::relative::Geometry;
 use scene::Follow;
@@ -102,13 +103,9 @@ const LEAST_MARGIN: f64 = -20.0;
 /// The curves of a quantity on all branches, the shown branch last; each of at most about `most` points.
 pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<QuantityCurve> {
     let Some(history) = &app_state.history else { return Vec::new() };
-    let mut order: Vec<usize> = (0..history.branches()).filter(|b| *b != app_state.branch).collect();
-    order.push(app_state.branch);
     let mut all = Vec::new();
-    for branch in order {
-        // The past that branches share is drawn once.
-        let own = app_state.branches.get(branch).filter(|_| branch != app_state.branch);
-        let span = [own.and_then(|b| b.parent).map_or(0.0, |(_, time)| time), f64::INFINITY];
+    // The past that branches share is drawn once.
+    for (branch, span) in branches(app_state, history) {
         if quantity == PlotQuantity::Clearance {
             let points = history.rooms(branch, span);
             all.push(QuantityCurve { branch, robot: None, points });
@@ -165,12 +162,63 @@ fn filter_curves(
             Some([record.snapshot.time, value(state)?])
         };
         let points: Vec<_> = records.iter().map(point).collect();
-        for stretch in points.split(Option::is_none).filter(|stretch| !stretch.is_empty()) {
-            let points = stretch.iter().flatten().copied().collect();
-            all.push(QuantityCurve { branch, robot: Some(robot), points });
+        all.extend(stretches(branch, robot, &points));
+    }
+    all
+}
+
+/// Names and units of what the custom law of the selected follower carries and shows at the shown time.
+pub fn signal_names(app_state: &AppState) -> Vec<(String, String)> {
+    let robot = app_state.tuned_follower().map(|(_, robot, ..)| robot);
+    let record = app_state.record();
+    let law = record.and_then(|record| record.laws.iter().find(|law| Some(law.robot) == robot).cloned());
+    law.map_or_else(Vec::new, |law| {
+        law.quantities.iter().map(|own| (own.name.clone(), own.unit.clone())).collect()
+    })
+}
+
+/// The curves of what custom laws call `name`, robot by robot, on all branches.
+pub fn signal_curves(app_state: &AppState, name: &str, most: usize) -> Vec<QuantityCurve> {
+    let Some(history) = &app_state.history else { return Vec::new() };
+    let mut all = Vec::new();
+    for (branch, span) in branches(app_state, history) {
+        let records = history.between(branch, span, most);
+        let robots: BTreeSet<usize> =
+            records.iter().flat_map(|record| &record.laws).map(|law| law.robot).collect();
+        for robot in robots {
+            let point = |record: &&StepRecord| {
+                let law = record.laws.iter().find(|law| law.robot == robot)?;
+                law.value(name).filter(|value| value.is_finite()).map(|value| [record.snapshot.time, value])
+            };
+            let points: Vec<_> = records.iter().map(point).collect();
+            all.extend(stretches(branch, robot, &points));
         }
     }
     all
+}
+
+/// Branches, the shown one last, each with the span of time that it does not share with the one it left, s.
+fn branches(app_state: &AppState, history: &History) -> Vec<(usize, [f64; 2])> {
+    let others = (0..history.branches()).filter(|branch| *branch != app_state.branch);
+    let span = |branch: usize| {
+        let own = app_state.branches.get(branch).filter(|_| branch != app_state.branch);
+        (branch, [own.and_then(|own| own.parent).map_or(0.0, |(_, time)| time), f64::INFINITY])
+    };
+    others.chain([app_state.branch]).map(span).collect()
+}
+
+/// A curve for every stretch in which there is a value.
+fn stretches(
+    branch: usize,
+    robot: usize,
+    points: &[Option<[f64; 2]>],
+) -> impl Iterator<Item = QuantityCurve> {
+    let all = points.split(Option::is_none).filter(|stretch| !stretch.is_empty());
+    all.map(move |stretch| QuantityCurve {
+        branch,
+        robot: Some(robot),
+        points: stretch.iter().flatten().copied().collect(),
+    })
 }
 
 /// Curves of quantities that depend on the whole run and need all records. `None` for other quantities.
@@ -187,9 +235,13 @@ fn certified(
         PlotQuantity::Lyapunov => |row| row.v,
         _ => return None,
     };
-    let rows =
-        if follow.law.kind == LawKind::FullState { vec![] } else { rows(records, index, edge, follow) };
+    let rows = if is_robust(follow) { rows(records, index, edge, follow) } else { vec![] };
     Some(rows.iter().map(|row| [row.time, value(row)]).filter(|p| p[1].is_finite()).collect())
+}
+
+/// Whether a follower's law has a switching term.
+fn is_robust(follow: &Follow) -> bool {
+    follow.law.built_in().is_some_and(|kind| kind != LawKind::FullState)
 }
 
 /// A quantity of an edge in a record; `None` if it is not defined.
@@ -202,7 +254,7 @@ fn value(
 ) -> Option<f64> {
     let state = record.edges.get(index)?;
     let rates = || true_rates(&record.snapshot, edge, state, follow.law.distance_min);
-    let observes = follow.law.kind == LawKind::OutputFeedback;
+    let observes = follow.law.observes();
     let value = match quantity {
         PlotQuantity::DistanceError => state.error[0],
         PlotQuantity::BearingError => state.error[1].to_degrees(),

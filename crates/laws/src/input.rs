@@ -41,6 +41,9 @@ pub struct LeaderInput {
     /// [dχ/dt, d²χ/dt²] of the heading χ from which the bearing is taken, [rad/s, rad/s²]: the leader's own turn rate, or 0
     /// with `heading = "path"`. Told to laws that know the leader's motion.
     pub frame: [f64; 2],
+    /// The leader's own heading, counted from χ, rad: 0, or its heading in the world with `heading = "path"`. Told to laws that
+    /// know the leader's motion: what the motion does to distance and bearing depends on it.
+    pub heading: f64,
 }
 
 /// One of the numbers of an [`Input`].
@@ -86,6 +89,8 @@ pub enum InputKind {
     LeaderTurnRate,
     /// `leader.turn_acceleration`.
     LeaderTurnAcceleration,
+    /// `leader.heading`.
+    LeaderHeading,
     /// `frame.turn_rate`.
     FrameTurnRate,
     /// `frame.turn_acceleration`.
@@ -96,36 +101,41 @@ use InputKind as K;
 
 /// Every number that a law may read: what it is, its name in law files, its unit, and one line about it. Names with a dot
 /// take a number before it where there are several leaders, as in `leader2.distance`.
-pub const INPUTS: [(InputKind, &str, Unit, &str); 22] = [
+pub const INPUTS: [(InputKind, &str, Unit, &str); 23] = [
     (K::Time, "time", Unit::new(0, 1), "time since the start of the run"),
     (K::Period, "period", Unit::new(0, 1), "control period"),
     (K::OwnSpeed, "own.speed", Unit::new(1, -1), "the follower's speed"),
     (K::OwnAcceleration, "own.acceleration", Unit::new(1, -2), "the acceleration that was applied last"),
-    (K::OwnTurnRate, "own.turn_rate", Unit::new(0, -1), "the turn rate that was applied last"),
+    (K::OwnTurnRate, "own.turn_rate", Unit::new(0, -1).angular(), "the turn rate that was applied last"),
     (K::Distance, "leader.distance", Unit::new(1, 0), "measured distance ℓ to the leader"),
     (
         K::Bearing,
         "leader.bearing",
-        Unit::NUMBER,
+        Unit::ANGLE,
         "measured bearing ψ: the follower, seen from the leader's heading",
     ),
     (
         K::ViewAngle,
         "leader.view_angle",
-        Unit::NUMBER,
+        Unit::ANGLE,
         "measured view angle γ: the leader stands at γ − π from the own heading",
     ),
     (K::DistanceRate, "leader.distance_rate", Unit::new(1, -1), "rate of the distance"),
-    (K::BearingRate, "leader.bearing_rate", Unit::new(0, -1), "rate of the bearing"),
+    (K::BearingRate, "leader.bearing_rate", Unit::new(0, -1).angular(), "rate of the bearing"),
     (K::WantedDistance, "wanted.distance", Unit::new(1, 0), "set point of the distance"),
-    (K::WantedBearing, "wanted.bearing", Unit::NUMBER, "set point of the bearing"),
+    (K::WantedBearing, "wanted.bearing", Unit::ANGLE, "set point of the bearing"),
     (
         K::WantedDistanceRate,
         "wanted.distance_rate",
         Unit::new(1, -1),
         "rate of the set point of the distance",
     ),
-    (K::WantedBearingRate, "wanted.bearing_rate", Unit::new(0, -1), "rate of the set point of the bearing"),
+    (
+        K::WantedBearingRate,
+        "wanted.bearing_rate",
+        Unit::new(0, -1).angular(),
+        "rate of the set point of the bearing",
+    ),
     (
         K::WantedDistanceAcceleration,
         "wanted.distance_acceleration",
@@ -135,7 +145,7 @@ pub const INPUTS: [(InputKind, &str, Unit, &str); 22] = [
     (
         K::WantedBearingAcceleration,
         "wanted.bearing_acceleration",
-        Unit::new(0, -2),
+        Unit::new(0, -2).angular(),
         "second derivative of the set point of the bearing",
     ),
     (K::LeaderSpeed, "leader.speed", Unit::new(1, -1), "the leader's speed"),
@@ -144,16 +154,27 @@ pub const INPUTS: [(InputKind, &str, Unit, &str); 22] = [
     (
         K::LeaderTurnAcceleration,
         "leader.turn_acceleration",
-        Unit::new(0, -2),
+        Unit::new(0, -2).angular(),
         "rate of the leader's turn rate",
+    ),
+    (
+        K::LeaderHeading,
+        "leader.heading",
+        Unit::ANGLE,
+        "the leader's own heading, counted from the heading that the bearing is taken from",
     ),
     (
         K::FrameTurnRate,
         "frame.turn_rate",
-        Unit::new(0, -1),
+        Unit::new(0, -1).angular(),
         "turn rate of the heading that the bearing is taken from",
     ),
-    (K::FrameTurnAcceleration, "frame.turn_acceleration", Unit::new(0, -2), "rate of that turn rate"),
+    (
+        K::FrameTurnAcceleration,
+        "frame.turn_acceleration",
+        Unit::new(0, -2).angular(),
+        "rate of that turn rate",
+    ),
 ];
 
 impl InputKind {
@@ -203,6 +224,7 @@ impl LeaderInput {
             K::LeaderAcceleration => self.motion.acceleration,
             K::LeaderTurnRate => self.motion.turn_rate,
             K::LeaderTurnAcceleration => self.motion.turn_acceleration,
+            K::LeaderHeading => self.heading,
             K::FrameTurnRate => self.frame[0],
             K::FrameTurnAcceleration => self.frame[1],
         }

@@ -7,11 +7,15 @@
 mod custom_law;
 mod declaration;
 mod input;
+mod language;
 mod noise;
+mod shipped;
 mod unit;
 
 pub use custom_law::{CustomLaw, Fault, Place};
 pub use declaration::{Declaration, Knowledge, Parameter, Quantity, Scale};
 pub use input::{INPUTS, Input, InputKind, LEADERS_MAX, LeaderInput};
+pub use language::{LawFile, Mistake};
 pub use noise::Noise;
+pub use shipped::{SHIPPED_LAWS, ShippedLaw, TEMPLATE, shipped};
 pub use unit::Unit;

@@ -16,8 +16,8 @@ pub use digest::{Digest, NumberOwner, numbers};
 pub use expectations::JudgedExpectation;
 pub use measurements::{MeasurementMetrics, difference};
 pub use metrics::{
-    EdgeMetrics, EventSummary, Metrics, MetricsBuilder, NarrowingMetrics, RobotMetrics, STANDING_AFTER,
-    StandingMetrics,
+    EdgeMetrics, EventSummary, LawFaultMetrics, Metrics, MetricsBuilder, NarrowingMetrics, RobotMetrics,
+    STANDING_AFTER, StandingMetrics,
 };
 pub use safety::SafetyMetrics;
 pub use statistics::{RootMeanSquare, median};

@@ -37,6 +37,9 @@ pub struct Metrics {
     /// What happened to the formation, in the order of time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub events: Vec<EventSummary>,
+    /// Custom laws that broke off, in the order of time.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub law_faults: Vec<LawFaultMetrics>,
     /// What the theorems say of every edge, where they were checked.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub certificates: Vec<CertificateMetrics>,
@@ -112,6 +115,19 @@ pub struct EdgeMetrics {
     pub ended: Option<f64>,
 }
 
+/// A custom law that gave no command.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LawFaultMetrics {
+    /// Whose law.
+    pub robot: String,
+    /// s.
+    pub time: f64,
+    /// Number of the control sample.
+    pub sample: u64,
+    /// The law, where in its text, and why.
+    pub fault: String,
+}
+
 /// Something that happened to the formation, or was refused.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EventSummary {
@@ -171,6 +187,7 @@ pub struct MetricsBuilder {
     conditions: Vec<Condition>,
     safety: Vec<SafetySums>,
     events: Vec<EventSummary>,
+    law_faults: Vec<LawFaultMetrics>,
 }
 
 /// Running sums of one edge.
@@ -217,6 +234,7 @@ impl MetricsBuilder {
             conditions: vec![Condition::Able; fleet.robots.len()],
             safety: vec![SafetySums::default(); fleet.robots.len()],
             events: vec![],
+            law_faults: vec![],
             fleet: fleet.clone(),
         }
     }
@@ -253,6 +271,14 @@ impl MetricsBuilder {
                 sums.add(time, state);
             }
         }
+        for state in record.laws.iter().filter(|state| !state.fault.is_empty()) {
+            self.law_faults.push(LawFaultMetrics {
+                robot: self.fleet.name(EntityId::Robot(state.robot)).to_owned(),
+                time,
+                sample: self.samples,
+                fault: state.fault.clone(),
+            });
+        }
         for event in &record.events {
             let words = event.words(&self.fleet);
             self.events.push(EventSummary {
@@ -287,6 +313,7 @@ impl MetricsBuilder {
                 .map(|(s, e)| s.finish(robot(s.leader.unwrap_or(e.leader)), robot(e.follower), self.samples))
                 .collect(),
             events: self.events.clone(),
+            law_faults: self.law_faults.clone(),
             robots: (0..self.fleet.robots.len()).map(|k| self.robot(k)).collect(),
             clearance_min: least.map(|(_, room)| room.clearance),
             clearance_min_time: least.map(|(_, room)| room.time),

@@ -2,8 +2,8 @@
 
 use crate::{Column, TableKind};
 use vocabulary::{
-    Constraint, Contact, EdgeState, EntityId, EventRecord, FleetInfo, MeasurementRecord, Placement,
-    RobotState, SafetyState, Word,
+    Constraint, Contact, EdgeState, EntityId, EventRecord, FleetInfo, LawQuantity, MeasurementRecord,
+    Placement, RobotState, SafetyState, Word,
 };
 
 /// A value of a row.
@@ -35,6 +35,7 @@ pub(crate) fn empty(kind: TableKind) -> Vec<(&'static str, Column)> {
         TableKind::Contacts => contact([""; 2], &Contact::default(), &mut add),
         TableKind::Props => prop(0.0, "", &Placement::default(), &mut add),
         TableKind::Safety => safety(0.0, &FleetInfo::default(), &SafetyState::default(), &mut add),
+        TableKind::Laws => law(0.0, "", &LawQuantity::default(), 0.0, &mut add),
         TableKind::Events => event(0.0, &FleetInfo::default(), &EventRecord::default(), &mut add),
         TableKind::Measurements => measurement([""; 2], &MeasurementRecord::default(), &mut add),
     }
@@ -147,6 +148,15 @@ pub(crate) fn safety(time: f64, fleet: &FleetInfo, state: &SafetyState, row: &mu
     row("barriers", Text(&names(fleet, &barriers)));
     row("acting", Text(&names(fleet, &state.acting)));
     row("conflict", Text(&names(fleet, &state.conflict)));
+}
+
+/// A number of a custom law at a sample.
+pub(crate) fn law(time: f64, follower: &str, quantity: &LawQuantity, value: f64, row: &mut Row<'_>) {
+    row("time_s", Number(time));
+    row("follower", Text(follower));
+    row("quantity", Text(&quantity.name));
+    row("value", Number(value));
+    row("unit", Text(&quantity.unit));
 }
 
 /// Something that happened to the formation.

@@ -14,7 +14,7 @@ use parquet::file::properties::WriterProperties;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{FleetInfo, Mobility, StepRecord, Word, words};
+use vocabulary::{EntityId, FleetInfo, Mobility, StepRecord, Word, words};
 
 words! {
     /// The tables of a run; the word is the stem of the file's name.
@@ -31,6 +31,8 @@ words! {
         Measurements = "measurements",
         /// What the safety filters did.
         Safety = "safety",
+        /// What custom laws carry and show.
+        Laws = "laws",
         /// What happened to the formation.
         Events = "events",
     }
@@ -60,6 +62,7 @@ impl TableKind {
             Self::Props => moving,
             Self::Measurements => fleet.has_sensors,
             Self::Safety => fleet.has_safety,
+            Self::Laws => fleet.has_laws,
             Self::Events => fleet.has_events,
             _ => true,
         };
@@ -68,7 +71,7 @@ impl TableKind {
 
     /// Shows `row` the values of every row that `record` adds.
     fn rows(self, fleet: &FleetInfo, record: &StepRecord, row: &mut Row<'_>) {
-        let StepRecord { snapshot, edges: _, contacts, frames, safety, leaders: _, events } = record;
+        let StepRecord { snapshot, edges: _, contacts, frames, safety, laws, leaders: _, events } = record;
         match self {
             Self::Robots => {
                 for (member, robot) in fleet.robots.iter().zip(&snapshot.robots) {
@@ -100,6 +103,14 @@ impl TableKind {
             Self::Safety => {
                 for state in safety {
                     columns::safety(snapshot.time, fleet, state, row);
+                }
+            }
+            Self::Laws => {
+                for law in laws {
+                    let follower = fleet.name(EntityId::Robot(law.robot));
+                    for (quantity, value) in law.quantities.iter().zip(&law.values) {
+                        columns::law(snapshot.time, follower, quantity, *value, row);
+                    }
                 }
             }
             Self::Events => {

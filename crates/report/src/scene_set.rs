@@ -12,7 +12,6 @@ use crate::variant::{LAWS, Variant, constants_apart, laws_apart, short};
 use crate::words::round;
 use scene::{Role, Scene};
 use studies::verdict::verdict;
-use vocabulary::LawKind;
 
 /// All figures but the drawn one of the runs of [`crate::scene_runs`].
 pub fn of_scene(scene: &Scene, runs: &[FinishedRun]) -> Report {
@@ -62,7 +61,7 @@ fn straight(run: &Trace) -> bool {
 fn observed(run: &Trace) -> Option<ReportFigure> {
     let observes = |edge: &usize| {
         let robot = run.fleet.edges.get(*edge).and_then(|e| run.scene.robots.get(e.follower));
-        matches!(robot.map(|r| &r.role), Some(Role::Follow(f)) if f.law.kind == LawKind::OutputFeedback)
+        matches!(robot.map(|r| &r.role), Some(Role::Follow(f)) if f.law.observes())
     };
     let settled = |edge: &usize| run.settled(*edge).unwrap_or(0.0);
     let edges = (0..run.fleet.edges.len()).filter(|edge| run.follows(*edge)).filter(observes);

@@ -28,7 +28,9 @@ impl Variant {
         let mut scene = scene.clone();
         scene.for_every_robot(|robot| {
             let Role::Follow(follow) = &mut robot.role else { return };
-            follow.law.kind = self.law.unwrap_or(follow.law.kind);
+            if let Some(kind) = self.law {
+                (follow.law.kind, follow.law.file, follow.law.text) = (kind, None, None);
+            }
             if let Some(epsilon) = self.epsilon {
                 follow.observer.epsilon = [epsilon; 2];
                 follow.observer.adaptive = false;
@@ -50,9 +52,10 @@ pub(crate) fn short(kind: LawKind) -> &'static str {
 /// The three laws, in descending order of what they have to know.
 pub(crate) const LAWS: [LawKind; 3] = [LawKind::FullState, LawKind::RobustState, LawKind::OutputFeedback];
 
-/// Law and ε, s, of the scene's first follower.
+/// Built-in law and ε, s, of the scene's first follower.
 pub(crate) fn of(scene: &Scene) -> Option<(LawKind, f64)> {
-    followers(scene).next().map(|follow| (follow.law.kind, follow.observer.epsilon[0]))
+    let follow = followers(scene).next()?;
+    Some((follow.law.built_in()?, follow.observer.epsilon[0]))
 }
 
 /// The follower parameters of a scene.
@@ -72,6 +75,8 @@ pub(crate) fn laws_apart(scene: &Scene) -> Option<&'static str> {
         Some("nobody follows")
     } else if followers(scene).any(|follow| follow.sensing.kind != SensingKind::Truth) {
         Some("followers measure, and two of the laws need more than measurements tell")
+    } else if followers(scene).any(|follow| follow.law.custom().is_some()) {
+        Some("followers have a law of their own")
     } else if scene.robots.iter().any(|robot| robot.vehicle.kind != VehicleKind::Unicycle) {
         Some("gains on wheels are found for output feedback, and would not fit the other laws")
     } else if scene.robots.len() > MANY {
@@ -83,7 +88,7 @@ pub(crate) fn laws_apart(scene: &Scene) -> Option<&'static str> {
 
 /// Why observer constants cannot be compared on a scene, if they cannot.
 pub(crate) fn constants_apart(scene: &Scene) -> Option<&'static str> {
-    if !followers(scene).any(|follow| follow.law.kind == LawKind::OutputFeedback) {
+    if !followers(scene).any(|follow| follow.law.observes()) {
         Some("no observer runs")
     } else if followers(scene).any(|follow| follow.sensing.kind == SensingKind::Camera) {
         Some("drawing for cameras over and over takes minutes: `echelon budget --epsilon` does it")

@@ -72,7 +72,7 @@ pub(crate) fn expand(
         if member.is_some_and(MemberKeys::is_absent) {
             continue;
         }
-        let (mut own, mut speed) = (usual, speed);
+        let (mut own, mut speed) = (usual.clone(), speed);
         if member.is_some() {
             own = group.outfit(member, defaults, reporter)?;
             speed = start_speed(keys.speed.as_ref(), &own.vehicle, own.law.standing, reporter);
@@ -144,7 +144,7 @@ fn places(node: &Node) -> std::ops::RangeInclusive<usize> {
 }
 
 /// What a robot of a group is and does.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Outfit {
     vehicle: Vehicle,
     law: Law,
@@ -328,7 +328,7 @@ impl Group<'_> {
         defaults: &Defaults,
         reporter: &mut Reporter,
     ) -> Option<Outfit> {
-        let Some(keys) = self.member(0) else { return Some(*usual) };
+        let Some(keys) = self.member(0) else { return Some(usual.clone()) };
         let shared = ["name", "vehicle", "safety", "proximity"];
         for (key, span) in keys.spans().into_iter().filter(|(key, _)| !shared.contains(key)) {
             reporter.report(span, format!("`{key}` is for robots that follow, but `{name}` leads"));

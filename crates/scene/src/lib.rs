@@ -17,6 +17,7 @@ mod graph;
 mod ground;
 mod groups;
 mod heights_file;
+mod law_file;
 mod leaders;
 mod link;
 mod load;
@@ -44,7 +45,7 @@ mod types;
 mod vehicle;
 
 pub use diagnostics::{Diagnostic, Diagnostics};
-pub use edit::{ChangeText, EditError, SceneText};
+pub use edit::{ChangeText, EditError, SceneText, toml_text};
 pub use link::{Link, LinkError, LinkOrigin, LinkProof, LinkedScene, TimedOverride};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
@@ -52,7 +53,8 @@ pub use shipped::{SHIPPED, Shipped, nearest_shipped, scene_name, shipped};
 pub use text::node::composed;
 pub use types::{
     Change, Compensation, Environment, Event, Expect, Failure, Film, Follow, Ground, HandOver, Happening,
-    Holds, Joining, Law, Leader, Leaders, Narrowing, Noise, Observer, OnContact, Patch, Path, Physics, Place,
-    Plot, PropMotion, PropSpec, Proximity, Recovery, Relief, Robot, Role, Safety, Scene, Sensing,
-    SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views, Vision, When,
+    Holds, Joining, Law, LawSource, Leader, Leaders, Narrowing, Noise, Observer, OnContact, Patch, Path,
+    Physics, Place, Plot, PropMotion, PropSpec, Proximity, Recovery, Relief, Robot, Role, Safety, Scene,
+    Sensing, SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views,
+    Vision, When, WrittenLaw,
 };

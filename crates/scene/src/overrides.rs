@@ -2,6 +2,7 @@
 
 use crate::{
     groups::{made_by, member_called},
+    law_file::replaced_by,
     text::{
         Node, Reporter, Span, Value,
         node::{Entry, composed},
@@ -145,6 +146,14 @@ fn put(node: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Repor
         *node = value;
         return;
     };
+    if let [key] = rest {
+        let replaced: Vec<_> = replaced_by(part.text, key.text).collect();
+        if let (false, Value::Table(entries)) = (replaced.is_empty(), &mut node.value)
+            && let Some(table) = entries.iter_mut().find(|entry| entry.key == part.text)
+        {
+            table.node.leave_out(&replaced);
+        }
+    }
     match &mut node.value {
         Value::Table(entries) => {
             let index = entries.iter().position(|entry| entry.key == part.text).unwrap_or_else(|| {

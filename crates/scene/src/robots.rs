@@ -4,9 +4,12 @@ use crate::{
     Follow, Law, Narrowing, Observer, Path, Proximity, Robot, Role, Safety, Sensing, Vehicle, VehicleKind,
     document::RobotKeys,
     graph::Named,
+    law_file::faults,
     leaders::{check_several, leaders, named},
     text::{Found, Keys, Node, Part, Reporter, Span},
-    types::{LawPart, NarrowingPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart},
+    types::{
+        LawPart, NarrowingPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart, WrittenLaw,
+    },
     vehicle::{WrittenVehicle, kind_is_lost, vehicle},
 };
 use vocabulary::{HeadingReference, Pose, math};
@@ -42,11 +45,21 @@ impl Defaults {
 
     /// The law of a robot or group on a vehicle of `kind` that says `own` of it and stands at `span`.
     pub(crate) fn law(&self, own: &LawPart, kind: VehicleKind, span: Span, reporter: &mut Reporter) -> Law {
-        let law = own.complete_with(&self.law, Law::fitting(kind));
+        let law = self.chosen(own, own.complete_with(&self.law, Law::fitting(kind)));
         let mut report = |keys: &[&str], message: String| {
             let find = |key: &&str| own.span_of(key).or_else(|| self.law.span_of(key));
             reporter.report(keys.iter().find_map(find).unwrap_or(span), message);
         };
+        match law.custom() {
+            Some(custom) => faults(&law.parameters, custom).into_iter().for_each(|fault| report(&["parameters"], fault)),
+            None if law.parameters.is_empty() => {}
+            None => report(
+                &["parameters"],
+                "`parameters` are those of a custom law, which `file` or `text` names; the gains of a built-in law are \
+                 keys of their own, such as `k`"
+                    .to_owned(),
+            ),
+        }
         let Law { heading, heading_length, heading_lag, standing, .. } = law;
         if heading == HeadingReference::Path && heading_lag > 2.0 * heading_length {
             let message = format!(
@@ -60,6 +73,22 @@ impl Defaults {
                            turns at a stop";
             report(&["standing", "heading"], message.to_owned());
         }
+        law
+    }
+
+    /// A law as it was completed, where `own` and the scene choose different ones: what is said nearer to the robot counts,
+    /// and so do parameters, which belong to a choice.
+    fn chosen(&self, own: &LawPart, mut law: Law) -> Law {
+        let said = |part: &LawPart| part.kind.is_some() || part.file.is_some() || part.text.is_some();
+        let nearest = if said(own) { own } else { &self.law };
+        let custom =
+            |found: &Option<Found<Option<WrittenLaw>>>| found.as_ref().and_then(|found| found.value.clone());
+        law.text = custom(&nearest.text);
+        law.file = custom(&nearest.file).filter(|_| law.text.is_none());
+        let values =
+            |part: &LawPart| part.parameters.as_ref().map(|found| found.value.clone()).unwrap_or_default();
+        law.parameters = if said(own) { values(own) } else { values(&self.law) };
+        law.parameters.extend(values(own));
         law
     }
 

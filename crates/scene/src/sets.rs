@@ -5,7 +5,7 @@ use crate::types::{
     LawPart, NarrowingPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart,
 };
 use crate::vehicle::applies;
-use crate::{Follow, Robot, Role, Scene};
+use crate::{Follow, Law, Robot, Role, Scene};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use vocabulary::ScalarTrajectory;
@@ -118,7 +118,7 @@ impl ParameterDifference {
         } else {
             self.obstacles.push(format!("{at}leader"));
         }
-        self.note_table([&a.law, &b.law], &format!("{at}law."), is_live::<LawPart>);
+        self.note_law(&a.law, &b.law, &format!("{at}law."));
         self.note_table([&a.observer, &b.observer], &format!("{at}observer."), is_live::<ObserverPart>);
         self.note_table([&a.narrowing, &b.narrowing], &format!("{at}narrowing."), is_live::<NarrowingPart>);
         self.note_table([&a.sensing, &b.sensing], &format!("{at}sensing."), is_live::<SensingPart>);
@@ -131,6 +131,20 @@ impl ParameterDifference {
             [Some(_), Some(value)] => self.sets.push(format!("{at}{key}={}", written(value))),
             _ => self.obstacles.push(format!("{at}{key}")),
         }
+    }
+
+    /// Of the keys that choose a law the one that chooses the second.
+    fn note_law(&mut self, a: &Law, b: &Law, at: &str) {
+        if (a.custom(), a.built_in()) != (b.custom(), b.built_in()) {
+            self.sets.push(match (&b.text, &b.file) {
+                (Some(law), _) => format!("{at}text={}", law.text()),
+                (None, Some(law)) if law.is_apart() => format!("{at}text={}", law.text()),
+                (None, Some(law)) => format!("{at}file={}", law.name()),
+                (None, None) => format!("{at}kind={}", written(&b.kind)),
+            });
+        }
+        let same = Law { kind: b.kind, file: b.file.clone(), text: b.text.clone(), ..a.clone() };
+        self.note_table([&same, b], at, is_live::<LawPart>);
     }
 
     /// The keys in which two tables differ, those to be set of which `may` says so.

@@ -9,7 +9,7 @@ use crate::{
 use std::collections::HashMap;
 use std::f64::consts::PI;
 use vocabulary::{
-    CameraModel, CameraMount, FACES, LawKind, Pose, ScalarTrajectory, Shell, TAGS, TimeMode, Word, math, wrap,
+    CameraModel, CameraMount, FACES, Pose, ScalarTrajectory, Shell, TAGS, TimeMode, Word, math, wrap,
 };
 
 /// Robots whose shells the tag family can tell apart.
@@ -106,13 +106,21 @@ pub(crate) fn check_sight(said: &Said<'_>, drafts: &[RobotDraft], reporter: &mut
 
 fn check_law(said: &Said<'_>, follow: &Follow, robot: &Robot, span: Span, reporter: &mut Reporter) {
     let word = follow.sensing.kind.word();
-    if follow.law.kind != LawKind::OutputFeedback {
-        let law = follow.law.kind.word();
-        let message = format!(
-            "`{}` uses the `{law}` law, which needs more than measurements tell; with sensing `{word}` its law must be \
-             `output-feedback`",
-            robot.name
-        );
+    if !follow.law.observes() {
+        let message = match follow.law.custom() {
+            Some(law) => format!(
+                "`{}` uses {}, which knows more than measurements tell; with sensing `{word}` its text must not say \
+                 `knows`",
+                robot.name,
+                law.name()
+            ),
+            None => format!(
+                "`{}` uses the `{}` law, which needs more than measurements tell; with sensing `{word}` its law must be \
+                 `output-feedback`",
+                robot.name,
+                follow.law.kind.word()
+            ),
+        };
         reporter.report(span, message);
     }
     if let Some(mode) = said.time.mode.as_ref().filter(|mode| mode.value == TimeMode::Continuous) {

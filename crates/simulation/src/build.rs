@@ -8,7 +8,9 @@ use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::safety::SafetyConfig;
 use crate::setup::Setup;
 use crate::stage::{handling, stage};
-use formation::{EdgeLaw, Formation, Graph, Heading, PathFilter, SetPointTrajectory, TrackerParameters};
+use formation::{
+    Custom, EdgeLaw, Formation, Graph, Heading, PathFilter, SetPointTrajectory, TrackerParameters,
+};
 use perception::proximity::{ProximityConfig, ProximitySensor};
 use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, SensorKind};
 use scene::{Follow, Leader, OnContact, Role, Scene, SensingKind, SwitchingKind, Vision};
@@ -77,6 +79,10 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
                 vec![]
             },
             has_sensors: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
+            has_laws: scenes_of(scene).any(|scene| {
+                scene.followers().any(|(_, follow)| follow.law.custom().is_some())
+                    || scene.joining().iter().any(|(_, follow)| follow.law.custom().is_some())
+            }),
             has_events: !scene.events.is_empty() || scene.hand_over.held_up.is_some(),
             has_safety: scene.robots.iter().any(|robot| robot.proximity.range.is_some()),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
@@ -93,6 +99,11 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         duration: scene.time.duration,
         changes,
     })
+}
+
+/// A scene as it begins, and as each of its changes leaves it.
+fn scenes_of(scene: &Scene) -> impl Iterator<Item = &Scene> {
+    std::iter::once(scene).chain(scene.changes.iter().map(|change| &*change.then))
 }
 
 /// What `change` puts in place.
@@ -120,8 +131,7 @@ fn check_continuous(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), 
     {
         return Err(BuildError::PathHeading { robot: (*name).to_owned() });
     }
-    for (name, follow) in followers.iter().filter(|(_, f)| f.law.kind == vocabulary::LawKind::OutputFeedback)
-    {
+    for (name, follow) in followers.iter().filter(|(_, f)| f.law.observes()) {
         let [a, b] = follow.observer.epsilon;
         if a.min(b) < EPSILON_MIN {
             return Err(BuildError::Stiff { robot: (*name).to_owned(), epsilon: a.min(b) });
@@ -154,7 +164,7 @@ pub fn edge_law(follow: &Follow, leader: &Leader, now: [f64; 2]) -> EdgeLaw {
                 }
             },
         },
-        custom: None,
+        custom: law.custom().map(|custom| Custom::new(custom.name(), custom.law(), law.values())),
         observer,
         tracker: tracker_parameters(follow, observer),
         set_point: SetPointTrajectory {

@@ -9,9 +9,19 @@ pub fn caption(scene: &Scene) -> String {
     if all.is_empty() {
         return "No followers".to_owned();
     }
-    let mut parts = vec![common(&all, |follow| law(follow.law.kind)).unwrap_or("Mixed laws").to_owned()];
-    parts.push(format!("K {}", range(&all, |follow| follow.law.k)));
-    let robust: Vec<_> = all.iter().copied().filter(|f| f.law.kind != LawKind::FullState).collect();
+    let mut parts = vec![common(&all, law).unwrap_or_else(|| "Mixed laws".to_owned())];
+    let custom: Vec<_> = all.iter().copied().filter(|follow| follow.law.custom().is_some()).collect();
+    if let (Some(law), Some(Some(_))) =
+        (custom.first(), common(&custom, |follow| follow.law.custom().cloned()))
+    {
+        parts.extend(parameters(law, &custom));
+    }
+    let built_in: Vec<_> = all.iter().copied().filter(|follow| follow.law.custom().is_none()).collect();
+    if !built_in.is_empty() {
+        parts.push(format!("K {}", range(&built_in, |follow| follow.law.k)));
+    }
+    let robust: Vec<_> =
+        built_in.into_iter().filter(|follow| follow.law.kind != LawKind::FullState).collect();
     if !robust.is_empty() {
         parts.push(format!("β {}", range(&robust, |follow| follow.law.beta)));
         parts.push(match common(&robust, |follow| follow.law.switching) {
@@ -71,12 +81,26 @@ pub fn caption(scene: &Scene) -> String {
     parts.join(" · ")
 }
 
-fn law(kind: LawKind) -> &'static str {
-    match kind {
-        LawKind::FullState => "Full state feedback",
-        LawKind::RobustState => "Robust state feedback",
-        LawKind::OutputFeedback => "Output feedback",
+fn law(follow: &Follow) -> String {
+    match (follow.law.custom(), follow.law.kind) {
+        (Some(law), _) if law.declaration().title.is_empty() => law.name().to_owned(),
+        (Some(law), _) => law.declaration().title.clone(),
+        (None, LawKind::FullState) => "Full state feedback".to_owned(),
+        (None, LawKind::RobustState) => "Robust state feedback".to_owned(),
+        (None, LawKind::OutputFeedback) => "Output feedback".to_owned(),
     }
+}
+
+/// Most parameters of a custom law that a caption has room for.
+const PARAMETERS: usize = 4;
+
+/// The first parameters of a law that all of these followers have.
+fn parameters<'a>(law: &'a Follow, all: &'a [&Follow]) -> impl Iterator<Item = String> {
+    let declared = law.law.custom().map_or(&[][..], |law| &law.declaration().parameters);
+    declared.iter().take(PARAMETERS).enumerate().map(|(index, parameter)| {
+        let value = range(all, |follow| [follow.law.values()[index]; 2]);
+        format!("{} {value} {}", parameter.symbol, parameter.unit).trim_end().to_owned()
+    })
 }
 
 fn measures(follow: &Follow) -> bool {
@@ -97,7 +121,7 @@ fn observer(follow: &Follow) -> Option<ObserverWords> {
     } else if measures(follow) && follow.observer.adaptive {
         Some(ObserverWords::Noise)
     } else {
-        (follow.law.kind == LawKind::OutputFeedback).then_some(ObserverWords::Epsilon)
+        follow.law.observes().then_some(ObserverWords::Epsilon)
     }
 }
 

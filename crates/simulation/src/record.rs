@@ -2,7 +2,7 @@
 
 use crate::simulation::Simulation;
 use std::f64::consts::PI;
-use vocabulary::{EdgeState, Relative, wrap};
+use vocabulary::{EdgeState, EventKind, EventRecord, LawState, Relative, wrap};
 
 /// Fills in the record of the sample at `time` s.
 pub(crate) fn write_record(run: &mut Simulation, time: f64) {
@@ -20,6 +20,8 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
         run.record.leaders.extend(graph.leaders());
     }
     run.events.told().clone_into(&mut run.record.events);
+    record_laws(run);
+    let graph = run.formation.graph();
     for (index, (edge, out)) in run.formation.edges().iter().zip(&mut run.record.edges).enumerate() {
         let robots = &mut run.record.snapshot.robots;
         let decision = &run.state.decisions[index];
@@ -73,6 +75,28 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
             *out = not_in_force(out);
         }
     }
+}
+
+/// What custom laws carry and show; one that breaks off is an event.
+fn record_laws(run: &mut Simulation) {
+    let graph = run.formation.graph();
+    let mut told = 0;
+    for (index, law) in run.formation.laws().iter().enumerate() {
+        let follower = graph.edges()[index].follower;
+        let Some(custom) = law.custom.as_ref().filter(|_| graph.edge_of(follower) == Some(index)) else {
+            continue;
+        };
+        if run.record.laws.len() == told {
+            run.record.laws.push(LawState::default());
+        }
+        let state = &mut run.record.laws[told];
+        custom.record(follower, &run.state.customs[index], state);
+        if !state.fault.is_empty() {
+            run.record.events.push(EventRecord::done(EventKind::LawFault, follower, None));
+        }
+        told += 1;
+    }
+    run.record.laws.truncate(told);
 }
 
 /// An edge whose follower follows nobody: nothing is wanted and nothing is told.

@@ -69,7 +69,7 @@ impl Gains {
     /// Those of the first follower by output feedback.
     fn of(scene: &Scene) -> Option<Self> {
         let mut followers = scene.followers().map(|(_, follow)| follow);
-        let follow = followers.find(|follow| follow.law.kind == LawKind::OutputFeedback)?;
+        let follow = followers.find(|follow| follow.law.built_in() == Some(LawKind::OutputFeedback))?;
         let (law, epsilon) = (&follow.law, follow.observer.epsilon[0]);
         Some(Self { k: law.k[0], beta: law.beta[0], slope: law.slope[0], epsilon })
     }

@@ -1,6 +1,8 @@
 //! What a run showed, held against what its scene expects.
 
-use metrics::{EdgeMetrics, EventSummary, JudgedExpectation, Metrics, STANDING_AFTER, StandingMetrics};
+use metrics::{
+    EdgeMetrics, EventSummary, JudgedExpectation, LawFaultMetrics, Metrics, STANDING_AFTER, StandingMetrics,
+};
 use scene::{Expect, OnContact, Scene};
 use simulation::{NotFinite, short};
 use vocabulary::{EventKind, Word};
@@ -11,12 +13,24 @@ pub(crate) fn not_finite(fault: &NotFinite) -> JudgedExpectation {
     JudgedExpectation { key: "finite", wanted, found: fault.to_string(), met: Some(false) }
 }
 
+/// What every custom law is asked for.
+fn law_fault(fault: &LawFaultMetrics) -> JudgedExpectation {
+    let LawFaultMetrics { robot, time, sample, fault } = fault;
+    JudgedExpectation {
+        key: "law",
+        wanted: "a command at every sample".to_owned(),
+        found: format!("{robot}, t = {time:.2} s (sample {sample}), {fault}"),
+        met: Some(false),
+    }
+}
+
 /// Everything that a scene asks of its run, in the order of its keys.
 pub fn verdict(scene: &Scene, metrics: &Metrics, completed: bool) -> Vec<JudgedExpectation> {
     // Where the scene ends a run at a contact, that is its end.
     let stopped = scene.physics.on_contact == OnContact::Stop && metrics.contacts > 0;
     let planned = scene.events.len();
-    let mut findings = expectations(&scene.expect, planned, metrics, completed || stopped);
+    let mut findings: Vec<_> = metrics.law_faults.iter().map(law_fault).collect();
+    findings.extend(expectations(&scene.expect, planned, metrics, completed || stopped));
     if scene.physics.on_contact == OnContact::Fail && !scene.expect.no_contact {
         let mut more = ExpectationJudge { metrics, list: Vec::new() };
         more.contacts("on_contact", "none, else the run fails".into(), |count| count == 0);
@@ -393,6 +407,7 @@ mod tests {
             clearance_min_robots: Some(["ann".into(), "bob".into()]),
             settling_band: [0.05, 0.05],
             events: vec![],
+            law_faults: vec![],
             certificates: vec![],
             contacts: 2,
             contact_impulse_max: 3.0,

@@ -23,6 +23,8 @@ words! {
         Wait = "wait",
         /// It has waited in vain, or has been held up for too long, and stays where it is for good.
         GiveUp = "give_up",
+        /// Its custom law gave a number that is not finite, or broke off: it brakes and stays where it is.
+        LawFault = "law_fault",
     }
 }
 
@@ -102,6 +104,7 @@ impl EventRecord {
                 EventKind::Coast => format!("{robot} fails and rolls to a stand"),
                 EventKind::Remove => format!("{robot} fails and is taken away"),
                 EventKind::Wait => format!("{robot} has lost its leader and waits"),
+                EventKind::LawFault => format!("{robot} brakes: its law gives no command"),
                 EventKind::GiveUp => format!("{robot} has waited in vain and stays where it is"),
             };
         }

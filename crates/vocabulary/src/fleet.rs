@@ -89,6 +89,7 @@ impl Default for Light {
 
 /// Robots, edges, surroundings and words of a run.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a table and a topic of its own")]
 pub struct FleetInfo {
     /// Title of the scene.
     pub title: String,
@@ -108,6 +109,8 @@ pub struct FleetInfo {
     pub has_sensors: bool,
     /// Whether any robot's commands may pass through a safety filter.
     pub has_safety: bool,
+    /// Whether any follower may have a custom law.
+    pub has_laws: bool,
     /// Whether robots may change leaders, fail or join while the run goes.
     pub has_events: bool,
     /// Solid things that are no robots, in the order of the snapshots.

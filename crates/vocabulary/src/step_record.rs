@@ -1,8 +1,8 @@
 //! One row of a run: the truth, and what every edge wanted, knew and did. Pictures and records are made of it.
 
 use crate::{
-    Command, Contact, Edge, EventRecord, FleetInfo, MeasurementRecord, MotionPhase, Relative, SafetyState,
-    Snapshot, TrackingState, nearest_turn, wrap,
+    Command, Contact, Edge, EventRecord, FleetInfo, LawState, MeasurementRecord, MotionPhase, Relative,
+    SafetyState, Snapshot, TrackingState, nearest_turn, wrap,
 };
 
 /// One edge at an instant.
@@ -58,6 +58,8 @@ pub struct StepRecord {
     pub frames: Vec<MeasurementRecord>,
     /// What the safety filters did, one entry per robot that has one, in the order of the robots.
     pub safety: Vec<SafetyState>,
+    /// What custom laws carry and show, one entry per follower that has one, in the order of their first edges.
+    pub laws: Vec<LawState>,
     /// Whom the follower of each edge follows; `None` where it follows nobody. Empty where that is as in
     /// [`FleetInfo::edges`].
     pub leaders: Vec<Option<usize>>,

@@ -47,6 +47,11 @@ pub(super) fn tell(report: &CertifyReport<'_>, written: &[PathBuf]) {
 fn edge(report: &CertifyReport<'_>, certificate: &Certificate) {
     let [from, to] = certificate.span;
     say(&format!("\n{}, {from:.2} to {to:.2} s", report.pair(certificate)));
+    if certificate.custom {
+        say("  the paper's statements are about its own laws; of any law holds what was measured:");
+        say(&format!("  {}", certificate.measured.words()));
+        return;
+    }
     for finding in &certificate.findings {
         statement(finding);
     }
@@ -315,6 +320,7 @@ fn chain(report: &CertifyReport<'_>, beyond: &Beyond) {
         if let Some(why) = gain.missing {
             let why = match why {
                 NotLinear::SeveralLeaders => "its follower has several leaders",
+                NotLinear::CustomLaw => "a custom law: `echelon laws test` linearises one",
                 NotLinear::Sign => "the sign has no slope: inside β nothing is passed on",
                 NotLinear::NoSteadyMotion => "no steady motion to linearise about",
             };

@@ -48,6 +48,8 @@ const HEADING: [usize; 2] = [8, 9];
 pub enum NotLinear {
     /// The follower has several leaders.
     SeveralLeaders,
+    /// A custom law: what it does is not known here.
+    CustomLaw,
     /// The sign has no slope.
     Sign,
     /// There is no steady motion: β is too small, or the place stands still.
@@ -167,6 +169,9 @@ impl LinearEdge {
     /// # Errors
     /// [`NotLinear`] where there is no steady motion to linearise about.
     pub fn about(law: &EdgeLaw, leader: &MotionInput) -> Result<Self, NotLinear> {
+        if law.custom.is_some() {
+            return Err(NotLinear::CustomLaw);
+        }
         if law.law.kind != LawKind::FullState && law.law.switching == Switching::Sign {
             return Err(NotLinear::Sign);
         }

@@ -112,6 +112,7 @@ impl StatementFinding {
 
 /// What a run's making says about premises, besides what samples show.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "each bears on other premises")]
 pub struct Circumstances {
     /// The period over which the law is held, s; `None` in continuous time.
     pub held: Option<f64>,
@@ -119,6 +120,8 @@ pub struct Circumstances {
     pub sampled_measurement: bool,
     /// Whether the follower goes by measurements.
     pub measures: bool,
+    /// Whether a custom law takes the place of the paper's.
+    pub custom: bool,
     /// Whether the follower or its leader is a vehicle on wheels.
     pub wheels: bool,
     /// Whether the follower has several leaders.
@@ -152,6 +155,14 @@ impl FindingView<'_> {
             Statement::RobustGain | Statement::NonNegative | Statement::TrackingDecrease => robust,
             _ => observes,
         };
+        if self.circumstances.custom {
+            return StatementFinding {
+                statement,
+                unmet: vec![Premise::CustomLaw],
+                against: None,
+                margin: None,
+            };
+        }
         if !applies {
             let premise = if robust { Premise::NoObserver } else { Premise::FullState };
             return StatementFinding { statement, unmet: vec![premise], against: None, margin: None };

@@ -16,6 +16,8 @@ pub struct Spell {
 pub enum Premise {
     /// The law has no robust term: it is told its leader's motion and cancels it.
     FullState,
+    /// The law is none of the paper's.
+    CustomLaw,
     /// The law has no observer.
     NoObserver,
     /// The follower has several leaders.
@@ -73,6 +75,7 @@ impl Premise {
         };
         match self {
             Self::FullState => "the law is told its leader's motion and has no robust term".to_owned(),
+            Self::CustomLaw => "the law is none of the paper's".to_owned(),
             Self::NoObserver => "the law has no observer".to_owned(),
             Self::SeveralLeaders => {
                 "the theorems are about one leader, and the follower has several".to_owned()

@@ -346,6 +346,7 @@ impl LabApp {
             Action::CurvesCsv => self.write_curves("csv", &quantities::csv(&self.app_state)),
             Action::CurvesSvg => self.write_curves("svg", &quantities::svg(&self.app_state)),
             Action::Panel(name) => panes::toggle(&mut self.tree, name),
+            Action::ShowPanel(name) => panes::bring(&mut self.tree, name),
             Action::Theme => {
                 let dark = self.ctx.theme() == egui::Theme::Dark;
                 self.ctx.set_theme(if dark { egui::Theme::Light } else { egui::Theme::Dark });

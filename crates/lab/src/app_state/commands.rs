@@ -31,6 +31,8 @@ fn changes_the_scene(action: &Action) -> bool {
     matches!(
         action,
         Action::Tune { .. }
+            | Action::ChooseLaw(_)
+            | Action::EditLaw(_)
             | Action::Set { .. }
             | Action::SetPoint { .. }
             | Action::Shape { .. }
@@ -98,6 +100,8 @@ impl AppState {
         }
         match action {
             Action::Tune { what, key, value } => self.tune(what, key, value.as_deref()),
+            Action::ChooseLaw(choice) => self.choose_law(choice),
+            Action::EditLaw(text) => self.edit_law(text),
             Action::Set { what, values } => self.set(what, values),
             Action::SetPoint { edge, distance, bearing } => self.move_set_point(*edge, [*distance, *bearing]),
             Action::Shape { scale, turn } => self.reshape(*scale, *turn),

@@ -10,8 +10,27 @@ use scene::{EditError, SceneText};
 use std::sync::Arc;
 
 impl AppState {
-    /// Edits the scene and passes the edit to the run; whether it succeeded.
+    /// Edits the scene and passes the edit to the run; whether it succeeded. Says why where it did not.
     pub fn edit(&mut self, what: &str, edit: impl FnOnce(&mut SceneText) -> Result<(), EditError>) -> bool {
+        let done = self.draft.is_some().then(|| self.try_edit(what, edit));
+        match done {
+            Some(Err(fault)) => {
+                self.fault(fault);
+                false
+            }
+            done => done.is_some(),
+        }
+    }
+
+    /// Edits the scene and passes the edit to the run.
+    ///
+    /// # Errors
+    /// Why the edit failed; then nothing has changed.
+    pub(crate) fn try_edit(
+        &mut self,
+        what: &str,
+        edit: impl FnOnce(&mut SceneText) -> Result<(), EditError>,
+    ) -> Result<(), String> {
         let past_changes = self.in_the_past();
         let time = self.time();
         let done = match &mut self.draft {
@@ -20,16 +39,10 @@ impl AppState {
                 draft.edit(what, |text| settled.settle(text).and_then(|()| edit(text)))
             }
             Some(_) => self.edit_past(what, edit),
-            None => return false,
+            None => return Ok(()),
         };
-        match done {
-            Ok(effect) => self.take(what, &effect),
-            Err(fault) => {
-                self.fault(fault);
-                return false;
-            }
-        }
-        true
+        self.take(what, &done?);
+        Ok(())
     }
 
     /// Whether the past is shown, where an edit starts a branch.

@@ -3,7 +3,7 @@
 use super::AppState;
 use crate::numbers::fixed;
 use crate::session::runner::RunRequest;
-use scene::{Event, Link, LinkProof, LinkedScene, SceneText, SensingKind, TimedOverride};
+use scene::{Event, Follow, Link, LinkProof, LinkedScene, Scene, SceneText, SensingKind, TimedOverride};
 use std::path::Path;
 use studies::link::LinkComparison;
 
@@ -101,6 +101,15 @@ impl AppState {
         let shown =
             || branch.changes.iter().filter(|change| self.cursor.is_none() || change.sample < samples);
         let base = with_events(&self.base, shown().flat_map(|change| &change.events))?;
+        // Files of laws are not on the machine where the link is opened.
+        let base = match &self.first {
+            Some(scene) if has_law_files(scene) => {
+                let mut text = SceneText::parse(&base).map_err(|error| error.to_string())?;
+                text.embed_laws(scene);
+                text.text()
+            }
+            _ => base,
+        };
         let mut link = Link::to_text(&base, &name).map_err(|error| error.to_string())?;
         for change in shown() {
             for set in &change.set {
@@ -123,6 +132,13 @@ impl AppState {
 }
 
 /// The text of a scene with what happened by hand: events have their own times.
+/// Whether a law of a scene has a file of its own.
+fn has_law_files(scene: &Scene) -> bool {
+    let all = std::iter::once(scene).chain(scene.changes.iter().map(|change| &*change.then));
+    let law = |follow: &Follow| follow.law.file.as_ref().is_some_and(scene::WrittenLaw::is_apart);
+    all.flat_map(Scene::followers).any(|(_, follow)| law(follow))
+}
+
 fn with_events<'a>(base: &str, events: impl Iterator<Item = &'a Event>) -> Result<String, String> {
     let mut events = events.peekable();
     if events.peek().is_none() {

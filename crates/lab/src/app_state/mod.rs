@@ -3,6 +3,7 @@
 mod branch_info;
 pub mod commands;
 mod edits;
+mod law_edit;
 mod linked;
 mod past_changes;
 mod recorded;
@@ -13,6 +14,7 @@ use crate::session::prediction::Prediction;
 use crate::session::runner::{RunEvent, RunRequest};
 use crate::session::scene_draft::SceneDraft;
 pub use branch_info::BranchInfo;
+pub use law_edit::LawEdit;
 pub use linked::StatusLine;
 use rendering::Trail;
 use scene::{Follow, Leader, Link, Scene};
@@ -114,6 +116,8 @@ pub struct AppState {
     pub(crate) chosen: Option<String>,
     /// The `[[changes]]` of that text.
     pub(crate) own: Vec<scene::Change>,
+    /// The text of a custom law that is being edited.
+    pub(crate) law_edit: Option<LawEdit>,
     /// Requests to the thread of the run.
     pub requests: Vec<RunRequest>,
 }
@@ -148,6 +152,7 @@ impl AppState {
             first: None,
             chosen: None,
             own: Vec::new(),
+            law_edit: None,
             requests: Vec::new(),
         }
     }

@@ -124,7 +124,7 @@ impl SliderRow {
             let name = format!("Reset {}", self.symbol.name.to_lowercase());
             back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, differs, name.clone()));
             if back.on_hover_text(format!("{name}: {default} {}", self.symbol.unit)).clicked() {
-                out.push(Action::Tune { what: name.clone(), key: self.key, value: None });
+                out.push(Action::Tune { what: name.clone(), key: self.key.into(), value: None });
             }
         });
     }

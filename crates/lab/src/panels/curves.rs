@@ -4,7 +4,7 @@ use super::{colour, nothing};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::numbers::fixed;
-use crate::quantities::{PlotQuantity, QuantityCurve, bounds, curves};
+use crate::quantities::{PlotQuantity, QuantityCurve, bounds, curves, signal_curves, signal_names};
 use crate::session::history::History;
 use eframe::egui::{self, Color32, Id, Stroke, Ui};
 use egui_plot::{GridMark, HLine, HoverPosition, LineStyle, Plot, PlotPoint, VLine};
@@ -23,21 +23,96 @@ pub fn show(ui: &mut Ui, app_state: &AppState, quantities: &[PlotQuantity], out:
     let gap = ui.spacing().item_spacing.y;
     let high = (ui.available_height() - gap * (quantities.len() - 1) as f32) / quantities.len() as f32;
     for (row, quantity) in quantities.iter().enumerate() {
-        plot(ui, app_state, *quantity, high, row + 1 == quantities.len(), out);
+        let spiky = !matches!(
+            quantity,
+            PlotQuantity::DistanceError | PlotQuantity::BearingError | PlotQuantity::Clearance
+        );
+        let plotted = PlottedCurves {
+            id: quantity.column().to_owned(),
+            axis: quantity.axis().to_owned(),
+            logarithmic: quantity.logarithmic(),
+            spiky,
+            bounds: bounds(app_state, *quantity),
+            curves: curves(app_state, *quantity, MOST_POINTS),
+        };
+        plot(ui, app_state, plotted, high, row + 1 == quantities.len(), out);
     }
+}
+
+/// Curves that share a plot.
+struct PlottedCurves {
+    id: String,
+    /// Label of the vertical axis.
+    axis: String,
+    /// Whether values are logarithms to the base of 10.
+    logarithmic: bool,
+    /// Whether few samples are far from all others.
+    spiky: bool,
+    /// Dashed lines.
+    bounds: Vec<f64>,
+    curves: Vec<QuantityCurve>,
+}
+
+/// Most signals that are plotted at once.
+const MOST_SIGNALS: usize = 3;
+
+/// What the custom law of the selected follower carries and shows: a choice of curves.
+pub fn signals(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
+    let known = signal_names(app_state);
+    if known.is_empty() {
+        return nothing(ui, "A custom law shows its memory and its `let`s here; the panel Law chooses one.");
+    }
+    let id = Id::unique("signals");
+    let mut chosen: Vec<String> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
+    chosen.retain(|name| known.iter().any(|(known, _)| known == name));
+    if chosen.is_empty() {
+        chosen.push(known[0].0.clone());
+    }
+    ui.horizontal_wrapped(|ui| {
+        for (name, unit) in &known {
+            let on = chosen.contains(name);
+            let unit = if unit.is_empty() { "a number".to_owned() } else { format!("in {unit}") };
+            if ui.selectable_label(on, name).on_hover_text(unit).clicked() {
+                if on && chosen.len() > 1 {
+                    chosen.retain(|other| other != name);
+                } else if !on {
+                    chosen.push(name.clone());
+                    let extra = chosen.len().saturating_sub(MOST_SIGNALS);
+                    chosen.drain(..extra);
+                }
+            }
+        }
+    });
+    let gap = ui.spacing().item_spacing.y;
+    let high = (ui.available_height() - gap * (chosen.len() - 1) as f32) / chosen.len() as f32;
+    for (row, name) in chosen.iter().enumerate() {
+        let unit = known.iter().find(|(known, _)| known == name).map_or("", |(_, unit)| unit);
+        let axis = if unit.is_empty() { name.clone() } else { format!("{name} ({unit})") };
+        let curves = signal_curves(app_state, name, MOST_POINTS);
+        let plotted = PlottedCurves {
+            id: format!("signal {name}"),
+            axis,
+            logarithmic: false,
+            spiky: true,
+            bounds: vec![],
+            curves,
+        };
+        plot(ui, app_state, plotted, high, row + 1 == chosen.len(), out);
+    }
+    ui.data_mut(|data| data.insert_temp(id, chosen));
 }
 
 fn plot(
     ui: &mut Ui,
     app_state: &AppState,
-    quantity: PlotQuantity,
+    plotted: PlottedCurves,
     high: f32,
     last: bool,
     out: &mut Vec<Action>,
 ) {
+    let PlottedCurves { id, axis, logarithmic, spiky, bounds, curves: all } = plotted;
     let end = app_state.history.as_ref().map_or(0.0, History::latest);
     let group = Id::unique("time axis");
-    let logarithmic = quantity.logarithmic();
     let weak = ui.visuals().weak_text_color();
     let text = |value: f64| match logarithmic {
         // Decades only: labels between them would repeat their neighbours'.
@@ -45,7 +120,7 @@ fn plot(
         true => format!("1e{}", fixed(value, 0)),
         false => short(value),
     };
-    let plot = Plot::new(("plot", quantity.column()))
+    let plot = Plot::new(("plot", id))
         .height(high.max(30.0))
         .show_axes([last, true])
         .show_grid(true)
@@ -74,18 +149,17 @@ fn plot(
                 if logarithmic { format!("{:.1e}", math::powf(10_f64, at.y)) } else { fixed(at.y, 3) };
             Some(format!("{} s\n{value}", fixed(at.x, 2)))
         });
-    let all = curves(app_state, quantity, MOST_POINTS);
     let colours: Vec<Color32> = all
         .iter()
         .map(|curve| curve.robot.map_or(ui.visuals().text_color(), |robot| colour(app_state, robot, ui)))
         .collect();
     let cursor = ui.visuals().strong_text_color();
     let chosen = app_state.chosen_robot();
-    let span = span(&all, quantity);
+    let span = span(&all, spiky, logarithmic);
     let off = OFF * (span[1] - span[0]) / f64::from(high.max(30.0));
     let response = plot.show(ui, |plot| {
         plot.set_plot_bounds_y(span[0]..=span[1]);
-        for bound in bounds(app_state, quantity) {
+        for bound in bounds {
             let near = all.iter().flat_map(|c| &c.points).any(|p| p[1].abs() > 0.4 * bound.abs());
             // A distant bound would flatten the curves.
             if near {
@@ -121,7 +195,7 @@ fn plot(
     // The label lies in the plot, where it takes no space.
     let at = response.response.rect.right_top() + egui::vec2(-6.0, 2.0);
     let font = egui::FontId::proportional(11.5);
-    let mut words = quantity.axis().to_owned();
+    let mut words = axis;
     if let Some(peak) = peak(&all, span).filter(|_| !logarithmic) {
         let decimals = if peak.abs() < 10.0 { 2 } else { usize::from(peak.abs() < 100.0) };
         words = format!("{words}   peak {}", fixed(peak, decimals));
@@ -197,18 +271,14 @@ fn straightened(points: &[[f64; 2]], [low, high]: [f64; 2], off: f64) -> Vec<[f6
 }
 
 /// The vertical range of a plot.
-fn span(curves: &[QuantityCurve], quantity: PlotQuantity) -> [f64; 2] {
+fn span(curves: &[QuantityCurve], spiky: bool, logarithmic: bool) -> [f64; 2] {
     let mut values: Vec<f64> = curves.iter().flat_map(|curve| &curve.points).map(|point| point[1]).collect();
     values.sort_by(f64::total_cmp);
     let (Some(low), Some(high)) = (values.first(), values.last()) else { return [-1.0, 1.0] };
-    let spiky = !matches!(
-        quantity,
-        PlotQuantity::DistanceError | PlotQuantity::BearingError | PlotQuantity::Clearance
-    );
     let beside = if spiky { (SPIKES * values.len() as f64) as usize } else { 0 };
     let low = values.get(beside).unwrap_or(low);
     let high = values.get(values.len() - 1 - beside).unwrap_or(high);
-    let (low, high) = if quantity.logarithmic() { (*low, *high) } else { (low.min(0.0), high.max(0.0)) };
+    let (low, high) = if logarithmic { (*low, *high) } else { (low.min(0.0), high.max(0.0)) };
     // Constant values are shown as constant.
     let room = 0.1 * (high - low).max(0.02);
     [low - room, high + room]

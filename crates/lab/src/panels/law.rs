@@ -1,7 +1,7 @@
 //! Law, gains and observer.
 
 use super::controls::{Range, SliderRow};
-use super::{choice, empty_panel, nothing, on_click, tune};
+use super::{choice, custom_law, empty_panel, nothing, on_click, tune};
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::symbols;
@@ -54,19 +54,11 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     // In a small window there is more than fits.
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         let (law, default) = (&follow.law, Law::fitting(kind));
-        choice(ui, "Law", "law.kind", law.kind, &LAWS, out);
-        let apart = ui.data(|data| data.get_temp(apart_id()).unwrap_or(false));
-        GAIN.two(ui, law.k, default.k, apart, out);
-        if law.kind != LawKind::FullState {
-            ROBUST.two(ui, law.beta, default.beta, apart, out);
-            switching(ui, law, out);
-            if law.switching == SwitchingKind::Tanh {
-                SLOPE.two(ui, law.slope, default.slope, apart, out);
-            }
-        }
-        let mut apart_now = apart;
-        if ui.checkbox(&mut apart_now, "Distance and bearing apart").on_hover_text(APART).changed() {
-            ui.data_mut(|data| data.insert_temp(apart_id(), apart_now));
+        custom_law::choice(ui, law, &LAWS, out);
+        if law.custom().is_some() {
+            custom_law::parameters(ui, app_state, law, out);
+        } else {
+            gains(ui, law, &default, out);
         }
         heading(ui, law, default.heading_length, default.heading_lag, out);
         if let Some(state) = state.filter(|_| law.heading == HeadingReference::Path) {
@@ -74,6 +66,23 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             ui.weak(format!("{name} goes by a heading {behind}° behind its leader's"));
         }
     });
+}
+
+/// The gains of a built-in law.
+fn gains(ui: &mut Ui, law: &Law, default: &Law, out: &mut Vec<Action>) {
+    let apart = ui.data(|data| data.get_temp(apart_id()).unwrap_or(false));
+    GAIN.two(ui, law.k, default.k, apart, out);
+    if law.kind != LawKind::FullState {
+        ROBUST.two(ui, law.beta, default.beta, apart, out);
+        switching(ui, law, out);
+        if law.switching == SwitchingKind::Tanh {
+            SLOPE.two(ui, law.slope, default.slope, apart, out);
+        }
+    }
+    let mut apart_now = apart;
+    if ui.checkbox(&mut apart_now, "Distance and bearing apart").on_hover_text(APART).changed() {
+        ui.data_mut(|data| data.insert_temp(apart_id(), apart_now));
+    }
 }
 
 /// Against what heading the bearing is held, and whether the follower stands.
@@ -114,7 +123,7 @@ pub fn observer(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         return empty_panel(ui, app_state, "There is no follower, so there is nothing to observe.");
     };
     let measures = follow.sensing.kind != scene::SensingKind::Truth;
-    if follow.law.kind != LawKind::OutputFeedback && !measures {
+    if !follow.law.observes() && !measures {
         return nothing(ui, "This law knows the rates. Output feedback estimates them.");
     }
     scope(ui, app_state, name, out);

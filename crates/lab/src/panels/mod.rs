@@ -4,6 +4,7 @@ pub mod branches;
 pub mod certificates;
 pub mod controls;
 pub mod curves;
+pub mod custom_law;
 pub mod edge;
 pub mod film;
 pub mod formation;
@@ -19,6 +20,7 @@ use crate::action::Action;
 use crate::app_state::AppState;
 use crate::numbers::toml_number;
 use eframe::egui::{self, Color32, ComboBox, Popup, PopupCloseBehavior, Response, TextEdit, Ui};
+use std::borrow::Cow;
 use vocabulary::Word;
 
 /// Emits an action if a widget was clicked.
@@ -133,8 +135,8 @@ fn dim(channel: u8) -> u8 {
 }
 
 /// The action that sets one value of the selected follower or of all followers.
-pub(crate) fn tune(what: &str, key: &'static str, value: String) -> Action {
-    Action::Tune { what: format!("{what}…"), key, value: Some(value) }
+pub(crate) fn tune(what: &str, key: impl Into<Cow<'static, str>>, value: String) -> Action {
+    Action::Tune { what: format!("{what}…"), key: key.into(), value: Some(value) }
 }
 
 /// A pair of values as TOML: one where both are the same.

@@ -180,7 +180,7 @@ fn parameters(ui: &mut Ui, app_state: &AppState, robot: &Robot, out: &mut Vec<Ac
 fn switch(ui: &mut Ui, text: &str, row: &SliderRow, mut on: bool, start: &str, out: &mut Vec<Action>) {
     if ui.checkbox(&mut on, text).changed() {
         let what = format!("{}: {}", text, if on { "on" } else { "off" });
-        out.push(Action::Tune { what, key: row.key, value: on.then(|| start.to_owned()) });
+        out.push(Action::Tune { what, key: row.key.into(), value: on.then(|| start.to_owned()) });
     }
 }
 
@@ -190,7 +190,7 @@ fn arena(ui: &mut Ui, app_state: &AppState, arena: Option<[f64; 4]>, out: &mut V
     let mut on = arena.is_some();
     if ui.checkbox(&mut on, "Stay within an arena").changed() {
         let value = on.then(|| rectangle(around(app_state)));
-        out.push(Action::Tune { what: "Arena".to_owned(), key, value });
+        out.push(Action::Tune { what: "Arena".to_owned(), key: key.into(), value });
     }
     let Some(sides) = arena else { return };
     let mut new = sides;

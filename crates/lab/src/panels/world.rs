@@ -50,7 +50,7 @@ pub fn limits(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
             ui.weak("unbounded, as in the paper");
             if ui.button("Set a limit").clicked() {
                 let (what, value) = ("Maximum acceleration".to_owned(), Some("4.0".to_owned()));
-                out.push(Action::Tune { what, key: ACCELERATION_MAX.key, value });
+                out.push(Action::Tune { what, key: ACCELERATION_MAX.key.into(), value });
             }
         });
     }

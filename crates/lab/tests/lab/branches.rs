@@ -66,6 +66,7 @@ fn ways() -> Vec<(&'static str, String)> {
         ("noise", three(&[("sensing", "{ kind = \"noise\", latency = 0.05, drop = 0.2 }")])),
         ("tags", three(&[("sensing", "{ kind = \"geometric\" }")])),
         ("unscented", three(&[("sensing", "{ kind = \"noise\" }"), ("observer.kind", "unscented")])),
+        ("a law with a memory", three(&[("law.file", "integral")])),
         ("cars", include_str!("../../../../scenes/cars-line-three.toml").to_owned()),
         ("kinds", include_str!("../../../../scenes/cars-mixed.toml").to_owned()),
         ("a rough field", include_str!("../../../../scenes/cars-rough.toml").to_owned()),

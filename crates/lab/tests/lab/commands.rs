@@ -60,11 +60,11 @@ const RETUNE: &[&str] = &["change"];
 const RESTART: &[&str] = &["open", "ahead", "play"];
 
 pub(crate) fn tune(key: &'static str, value: &str) -> Action {
-    Action::Tune { what: "Gain…".to_owned(), key, value: Some(value.to_owned()) }
+    Action::Tune { what: "Gain…".to_owned(), key: key.into(), value: Some(value.to_owned()) }
 }
 
 fn untune(key: &'static str) -> Action {
-    Action::Tune { what: "Reset gain".to_owned(), key, value: None }
+    Action::Tune { what: "Reset gain".to_owned(), key: key.into(), value: None }
 }
 
 pub(crate) fn set(path: &str, value: &str) -> Action {

@@ -7,6 +7,7 @@ mod common;
 mod edits;
 mod events;
 mod history;
+mod laws;
 mod links;
 mod pacing;
 mod panels;

@@ -18,8 +18,11 @@ fn what_is_selected_stays_so_by_its_name() {
 fn undo_stays_on_its_branch_and_the_past_shows_what_held_then() {
     let mut rig = Rig::new(THREE);
     rig.steps(50);
-    let gain =
-        |value: &str| Action::Tune { what: "Gain".to_owned(), key: "law.k", value: Some(value.to_owned()) };
+    let gain = |value: &str| Action::Tune {
+        what: "Gain".to_owned(),
+        key: "law.k".into(),
+        value: Some(value.to_owned()),
+    };
     rig.act(&[gain("7.0")]);
     rig.steps(20);
     let now = |rig: &Rig| rig.app_state.follower(0).map(|(_, _, follow)| follow.law.k[0]);

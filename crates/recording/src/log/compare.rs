@@ -121,6 +121,10 @@ fn bits(record: &mut StepRecord, out: &mut Vec<u8>) {
         out.extend(state.robot.to_le_bytes());
         record::write(&mut SafetyRecord::new(state, &FleetInfo::default()), out);
     }
+    for law in &mut record.laws {
+        out.extend(law.robot.to_le_bytes());
+        record::write(law, out);
+    }
     for event in &record.events {
         record::write(&mut EventMessage::new(event, &FleetInfo::default()), out);
     }
@@ -208,7 +212,7 @@ impl ComparedQuantity {
     }
 }
 
-/// All quantities of a moment, by edge, robot, prop, contact, measurement, safety filter and event.
+/// All quantities of a moment, by edge, robot, prop, contact, measurement, safety filter, law and event.
 fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     let mut all = Collector { of: "sample".to_owned(), table: 0, field: 0, found: vec![] };
     let mut record = record.clone();
@@ -244,6 +248,9 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     for state in &record.safety {
         let of = format!("safety filter of {}", name(state.robot));
         all.collect(6, of, &mut SafetyRecord::new(state, fleet));
+    }
+    for law in &mut record.laws {
+        all.collect(8, format!("law of {}", name(law.robot)), law);
     }
     for event in &record.events {
         all.collect(7, "what happened".to_owned(), &mut EventMessage::new(event, fleet));

@@ -26,6 +26,7 @@ impl Record for FleetInfo {
         self.terrain = terrain.into_iter().next().map(Arc::new);
         f.flag("has_safety", &mut self.has_safety)?;
         f.flag("has_events", &mut self.has_events)?;
+        f.flag("has_laws", &mut self.has_laws)?;
         let mut free = self
             .free
             .iter()

@@ -20,8 +20,8 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
 use vocabulary::{
-    Contact, EdgeState, EventRecord, FleetInfo, MeasurementRecord, Placement, RobotState, SafetyState,
-    StepRecord, counted,
+    Contact, EdgeState, EventRecord, FleetInfo, LawState, MeasurementRecord, Placement, RobotState,
+    SafetyState, StepRecord, counted,
 };
 
 /// A log of ours, and what the foreign one has and lacks.
@@ -178,6 +178,7 @@ impl ForeignLog {
             LogChannel::Measurement(_) => {
                 fleet.edges.iter().position(|edge| Topics::measurements(fleet, *edge) == topic)
             }
+            LogChannel::Law(_) => fleet.robots.iter().position(|member| Topics::law(member) == topic),
             LogChannel::Safety(_) => fleet.robots.iter().position(|member| Topics::safety(member) == topic),
             LogChannel::Prop(_) => fleet.props.iter().position(|prop| Topics::prop(prop) == topic),
             _ => Some(0),
@@ -234,6 +235,7 @@ struct Parts {
     frames: Vec<MeasurementRecord>,
     contacts: Vec<Contact>,
     safety: BTreeMap<usize, SafetyState>,
+    laws: BTreeMap<usize, LawState>,
     events: Vec<EventRecord>,
     sample: Option<SampleNumber>,
 }
@@ -257,6 +259,9 @@ impl Pending {
                     parts.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
                 }
                 LogChannel::Safety(index) => drop(parts.safety.insert(index, safety_of(index, data)?)),
+                LogChannel::Law(robot) => {
+                    drop(parts.laws.insert(robot, LawState { robot, ..record::read(data)? }));
+                }
                 LogChannel::Event => parts.events.push(record::read::<EventMessage>(data)?.event),
                 LogChannel::Contact => {
                     parts.contacts.push(record::read::<ContactRecord>(data)?.contact);
@@ -284,11 +289,12 @@ impl Parts {
         let (robots, edges) = (self.robots.len(), self.edges.len());
         let (contacts, frames) = (self.contacts.len(), self.frames.len());
         let found = [robots, edges, placed.len(), contacts, frames, self.safety.len(), self.events.len()];
-        (sample.counts == found).then_some(())?;
+        (sample.counts == found && sample.laws == self.laws.len()).then_some(())?;
         let inside = |last: Option<&usize>, count: usize| last.is_none_or(|last| *last < count);
         let fits = inside(self.robots.keys().next_back(), fleet.robots.len())
             && inside(self.edges.keys().next_back(), fleet.edges.len())
             && inside(self.safety.keys().next_back(), fleet.robots.len())
+            && inside(self.laws.keys().next_back(), fleet.robots.len())
             && inside(placed.keys().next_back(), fleet.props.len())
             && self.frames.iter().all(|frame| frame.edge < fleet.edges.len());
         let mut record = StepRecord { contacts: self.contacts, frames: self.frames, ..StepRecord::default() };
@@ -297,6 +303,7 @@ impl Parts {
         record.snapshot.props = placed.values().copied().collect();
         record.edges = self.edges.into_values().collect();
         record.safety = self.safety.into_values().collect();
+        record.laws = self.laws.into_values().collect();
         (record.leaders, record.events) = (sample.leaders, self.events);
         fits.then_some(record)
     }

@@ -157,6 +157,8 @@ pub(super) struct SampleNumber {
     pub(super) time: f64,
     /// Of robots, edges, props, contacts, measurements, safety filters and events.
     pub(super) counts: [usize; 7],
+    /// Of custom laws.
+    pub(super) laws: usize,
     /// Whom the follower of each edge follows; `None` where it follows nobody. Empty where that never changes.
     pub(super) leaders: Vec<Option<usize>>,
 }
@@ -175,6 +177,6 @@ impl Record for SampleNumber {
         let whole = |x: f64| x.fract() == 0.0 && (-1.0..1e9).contains(&x);
         leaders.iter().all(|x| whole(*x)).then_some(())?;
         self.leaders = leaders.iter().map(|x| (*x >= 0.0).then_some(*x as usize)).collect();
-        Some(())
+        f.count("laws", &mut self.laws)
     }
 }

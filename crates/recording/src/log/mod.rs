@@ -19,6 +19,7 @@ mod drawing;
 mod events;
 mod fleet;
 mod import;
+mod law;
 mod messages;
 mod outline;
 mod pictures;
@@ -80,6 +81,10 @@ impl Topics {
 
     fn prop(prop: &Prop) -> String {
         format!("/prop/{}/state", prop.name)
+    }
+
+    fn law(member: &RobotInfo) -> String {
+        format!("/robot/{}/law", member.name)
     }
 
     fn safety(member: &RobotInfo) -> String {

@@ -114,7 +114,7 @@ impl Pipe {
 /// Copies into memory that is there.
 fn copy(to: &mut StepRecord, from: &StepRecord) {
     // What is added to a moment has to be copied: it does not compile without.
-    let StepRecord { snapshot, edges, contacts, frames, safety, leaders, events } = from;
+    let StepRecord { snapshot, edges, contacts, frames, safety, laws, leaders, events } = from;
     to.snapshot.time = snapshot.time;
     to.snapshot.robots.clone_from(&snapshot.robots);
     to.snapshot.props.clone_from(&snapshot.props);
@@ -122,6 +122,7 @@ fn copy(to: &mut StepRecord, from: &StepRecord) {
     to.contacts.clone_from(contacts);
     to.frames.clone_from(frames);
     to.safety.clone_from(safety);
+    to.laws.clone_from(laws);
     to.leaders.clone_from(leaders);
     to.events.clone_from(events);
 }

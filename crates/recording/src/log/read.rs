@@ -17,7 +17,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use vocabulary::{EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, SafetyState, StepRecord};
+use vocabulary::{
+    EdgeState, FleetInfo, LawState, MeasurementRecord, Placement, RobotState, SafetyState, StepRecord,
+};
 
 /// A recorded run. A copy shares everything with the original.
 #[derive(Debug, Clone)]
@@ -47,6 +49,7 @@ pub(super) enum LogChannel {
     Prop(usize),
     Measurement(usize),
     Safety(usize),
+    Law(usize),
     Event,
     Contact,
     Sample,
@@ -261,6 +264,7 @@ impl LogChannel {
             Placement::NAME => Some(Self::Prop(index)),
             MeasurementRecord::NAME => Some(Self::Measurement(index)),
             SafetyRecord::NAME => Some(Self::Safety(index)),
+            LawState::NAME => Some(Self::Law(index)),
             EventMessage::NAME => Some(Self::Event),
             ContactRecord::NAME => Some(Self::Contact),
             SampleNumber::NAME => Some(Self::Sample),
@@ -357,6 +361,7 @@ fn take(
             record.frames.push(MeasurementRecord { edge: index, ..record::read(data)? });
         }
         LogChannel::Safety(index) => record.safety.push(safety_of(index, data)?),
+        LogChannel::Law(robot) => record.laws.push(LawState { robot, ..record::read(data)? }),
         LogChannel::Event => record.events.push(record::read::<EventMessage>(data)?.event),
         LogChannel::Contact => record.contacts.push(record::read::<ContactRecord>(data)?.contact),
         LogChannel::Sample => {
@@ -366,7 +371,7 @@ fn take(
             let (contacts, frames) = (record.contacts.len(), record.frames.len());
             let found =
                 [robots, edges, props.len(), contacts, frames, record.safety.len(), record.events.len()];
-            (sample.counts == found).then_some(())?;
+            (sample.counts == found && sample.laws == record.laws.len()).then_some(())?;
             record.leaders = sample.leaders;
             return Some(true);
         }

@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
-use vocabulary::{EdgeState, FleetInfo, MeasurementRecord, Placement, RobotState, StepRecord};
+use vocabulary::{EdgeState, FleetInfo, LawState, MeasurementRecord, Placement, RobotState, StepRecord};
 
 /// Where a message goes: its channel, which sample it belongs to and when that was.
 #[derive(Clone, Copy, Default)]
@@ -105,6 +105,7 @@ pub(super) struct Writer {
     measurements: Vec<u16>,
     props: Vec<u16>,
     safety: Vec<u16>,
+    laws: Vec<u16>,
     events: Option<u16>,
     contacts: u16,
     samples: u16,
@@ -152,6 +153,7 @@ impl Writer {
             measurements: vec![],
             props: vec![],
             safety: vec![],
+            laws: vec![],
             events: None,
             contacts: to.add_own::<ContactRecord>(Topics::CONTACTS, 0)?,
             samples: to.add_own::<SampleNumber>(Topics::SAMPLES, 0)?,
@@ -171,6 +173,9 @@ impl Writer {
             self.robots.push(to.add_own::<RobotState>(&Topics::robot(member), index)?);
             if fleet.has_safety {
                 self.safety.push(to.add_own::<SafetyRecord>(&Topics::safety(member), index)?);
+            }
+            if fleet.has_laws {
+                self.laws.push(to.add_own::<LawState>(&Topics::law(member), index)?);
             }
         }
         if fleet.has_events {
@@ -241,6 +246,13 @@ impl Writer {
                 filters += 1;
             }
         }
+        let mut laws = 0;
+        for state in &mut record.laws {
+            if let Some(channel) = self.laws.get(state.robot) {
+                to.put_own(*channel, stamp, state)?;
+                laws += 1;
+            }
+        }
         let mut happened = 0;
         if let Some(channel) = self.events {
             for event in &record.events {
@@ -248,11 +260,11 @@ impl Writer {
                 happened += 1;
             }
         }
-        let StepRecord { snapshot, edges, contacts, frames, safety: _, leaders, events: _ } = record;
+        let StepRecord { snapshot, edges, contacts, frames, safety: _, laws: _, leaders, events: _ } = record;
         let (robots, props) = (snapshot.robots.len(), snapshot.props.len());
         let counts = [robots, edges.len(), props, contacts.len(), frames.len(), filters, happened];
         let mut sample =
-            SampleNumber { number: self.number, time: snapshot.time, counts, leaders: leaders.clone() };
+            SampleNumber { number: self.number, time: snapshot.time, counts, laws, leaders: leaders.clone() };
         self.number += 1;
         to.put_own(self.samples, stamp, &mut sample)
     }

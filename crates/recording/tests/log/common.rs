@@ -7,8 +7,8 @@ use std::sync::Arc;
 use vocabulary::Judging;
 use vocabulary::{
     BarrierState, Body, Condition, Constraint, Contact, Edge, EdgeState, EntityId, EventKind, EventRecord,
-    FleetInfo, MeasurementRecord, Mobility, Outcome, Placement, Prop, Refusal, RobotInfo, RobotState,
-    SafetyState, Shell, Snapshot, Solid, StepRecord, Terrain, TrackingState, Word,
+    FleetInfo, LawQuantity, LawState, MeasurementRecord, Mobility, Outcome, Placement, Prop, Refusal,
+    RobotInfo, RobotState, SafetyState, Shell, Snapshot, Solid, StepRecord, Terrain, TrackingState, Word,
 };
 
 /// Numbers without rule, special ones among them (SplitMix64).
@@ -71,6 +71,7 @@ pub(crate) fn fleet() -> FleetInfo {
         free: vec![[false, true], [false, false]],
         has_sensors: true,
         has_safety: true,
+        has_laws: true,
         has_events: true,
         props: solids.into_iter().enumerate().map(prop).collect(),
         terrain: Some(Arc::new(Terrain {
@@ -170,6 +171,7 @@ pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRec
             measurements
         },
         safety: (0..n.below(4)).map(|robot| filtered(robot, n)).collect(),
+        laws: (0..n.below(3)).map(|robot| law(robot, n)).collect(),
         leaders: vec![[None, Some(0)][n.below(2)], [None, Some(1), Some(2)][n.below(3)]],
         events: (0..n.below(3)).map(|_| event(n)).collect(),
     }
@@ -184,6 +186,18 @@ fn event(n: &mut Numbers) -> EventRecord {
         obstacle: [None, Some(EntityId::Robot(0)), Some(EntityId::Prop(1))][n.below(3)],
         measured: n.many(),
         event: [None, Some(0), Some(7)][n.below(3)],
+    }
+}
+
+fn law(robot: usize, n: &mut Numbers) -> LawState {
+    let all = [("sum", "m s"), ("count", ""), ("e.x", "rad/s")];
+    let all = all.map(|(name, unit)| LawQuantity { name: name.to_owned(), unit: unit.to_owned() });
+    let count = n.below(4);
+    LawState {
+        robot,
+        quantities: all[..count].into(),
+        values: (0..count).map(|_| n.next()).collect(),
+        fault: ["", "my.law:3:7: `e` is not a number"][n.below(2)].to_owned(),
     }
 }
 

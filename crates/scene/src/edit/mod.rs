@@ -7,9 +7,10 @@ mod put;
 mod rename;
 mod schedule;
 
-use crate::{names::NameForm, text::node::composed};
+use crate::{Scene, law_file::replaced_by, names::NameForm, text::node::composed};
 use find::{PathStep, item_at, items, made_by_group, names, steps};
 pub use schedule::ChangeText;
+use std::collections::BTreeMap;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
 /// The text of a scene that can be edited.
@@ -27,6 +28,37 @@ pub struct SceneText {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct EditError(String);
+
+/// A text as a value of TOML, over several lines where it has them.
+pub fn toml_text(text: &str) -> String {
+    Value::from(text).decorated("", "").to_string()
+}
+
+/// Puts `texts` of laws in the places of the names of their files, in all tables called `law`.
+fn embed(item: &mut Item, texts: &BTreeMap<String, String>) {
+    if let Item::ArrayOfTables(tables) = item {
+        let tables = tables
+            .iter_mut()
+            .flat_map(|table| table.iter_mut().map(|(key, item)| (key.get().to_owned(), item)));
+        tables.for_each(|(key, item)| embed_in(&key, item, texts));
+        return;
+    }
+    if let Some(table) = item.as_table_like_mut() {
+        table.iter_mut().for_each(|(key, item)| embed_in(key.get(), item, texts));
+    }
+}
+
+fn embed_in(key: &str, item: &mut Item, texts: &BTreeMap<String, String>) {
+    let law = item.as_table_like_mut().filter(|_| key == "law");
+    if let Some(law) = law
+        && let Some(text) = law.get("file").and_then(Item::as_str).and_then(|name| texts.get(name))
+    {
+        law.remove("file");
+        law.insert("text", Item::Value(Value::from(text.as_str())));
+    } else {
+        embed(item, texts);
+    }
+}
 
 impl EditError {
     fn new(message: impl Into<String>) -> Self {
@@ -80,9 +112,31 @@ impl SceneText {
         for key in self.superseded(&steps, &value) {
             cut::cut(&mut edited, &[steps.as_slice(), &[PathStep::Key(key)]].concat())?;
         }
+        if let [.., PathStep::Key(table), PathStep::Key(key)] = steps.as_slice() {
+            for other in replaced_by(table, key) {
+                let path = [&steps[..steps.len() - 1], &[PathStep::Key(other.to_owned())]].concat();
+                if item_at(edited.as_item(), &path).is_some_and(|item| !item.is_none()) {
+                    cut::cut(&mut edited, &path)?;
+                }
+            }
+        }
         put::put(edited.as_item_mut(), &steps, 0, value)?;
         self.document = edited;
         Ok(())
+    }
+
+    /// Writes the texts of laws that have files of their own in the places of the files' names, so that the scene needs no
+    /// other file for them; `scene` is that of the text.
+    pub fn embed_laws(&mut self, scene: &Scene) {
+        let mut robots = scene.clone();
+        let mut texts = BTreeMap::new();
+        robots.for_every_robot(|robot| {
+            let law = robot.role.follow().and_then(|follow| follow.law.file.as_ref());
+            texts.extend(
+                law.filter(|law| law.is_apart()).map(|law| (law.name().to_owned(), law.text().to_owned())),
+            );
+        });
+        embed(self.document.as_item_mut(), &texts);
     }
 
     /// Takes out what is written at `path`, a value or a table; comment lines stay. Whether there was anything.

@@ -1,21 +1,29 @@
 //! Parameters of the law and of the observer of one edge. The defaults are the paper's; on wheels, whose actuators lag,
 //! they are gains that settle.
 
-use super::VehicleKind;
+use super::{VehicleKind, WrittenLaw};
+use crate::law_file::{LawFileForm, LawTextForm, ParametersForm};
 use crate::text::{
     Couple, Flag, Form, Node, Pair, Reporter, angle, keys, number, settings, table,
     words::{Words, word},
 };
+use laws::{Knowledge, Parameter};
 use serde_json::{Value as Json, json};
+use std::collections::BTreeMap;
 use vocabulary::{HeadingReference, LawKind, ObserverKind, ObserverStart, words};
 
 settings! {
     /// Parameters of a control law. A pair is for [distance, bearing]; one value stands for both. On wheels the gains
     /// that are not said are those that fit the kind of vehicle.
-    #[derive(Copy)]
     pub struct Law from LawPart {
-        /// Which law.
+        /// Which of the built-in laws.
         pub kind: LawKind = LawKind::OutputFeedback, word::<LawKind>(), Live;
+        /// In their place a custom law: the name of its file beside the scene, or of one that comes with the program.
+        pub file: Option<WrittenLaw> = None, LawFileForm, Live;
+        /// In their place a custom law: its text.
+        pub text: Option<WrittenLaw> = None, LawTextForm, Live;
+        /// Parameters of the custom law by name, in the units that it declares; its defaults where they are left out.
+        pub parameters: BTreeMap<String, f64> = BTreeMap::new(), ParametersForm, Live;
         /// Gains K = diag(k1, k2), 1/s.
         pub k: [f64; 2] = [5.0; 2], Pair(number("1/s").above(0.0)), Live;
         /// Gains of the switching term (β), [m/s², rad/s²].
@@ -36,13 +44,6 @@ settings! {
         /// Whether the follower stops with its leader, stands and starts again; it needs `heading = "path"`. It then has no
         /// `speed_min`.
         pub standing: bool = false, Flag, Live;
-    }
-}
-
-impl Law {
-    /// How many leaders it looks at.
-    pub fn leaders(&self) -> usize {
-        1
     }
 }
 
@@ -82,6 +83,59 @@ settings! {
 }
 
 impl Law {
+    /// How many leaders it looks at.
+    pub fn leaders(&self) -> usize {
+        self.custom().map_or(1, |law| law.declaration().leaders)
+    }
+
+    /// The custom law that takes the place of the built-in ones, if one does.
+    pub fn custom(&self) -> Option<&WrittenLaw> {
+        self.text.as_ref().or(self.file.as_ref())
+    }
+
+    /// The same law without a file of its own: its text stands here.
+    #[must_use]
+    pub fn in_scene(&self) -> Self {
+        match self.file.as_ref().filter(|law| law.is_apart()) {
+            Some(law) => Self { file: None, text: Some(law.in_scene()), ..self.clone() },
+            None => self.clone(),
+        }
+    }
+
+    /// Which of the built-in laws it is; `None` where a custom law takes their place.
+    pub fn built_in(&self) -> Option<LawKind> {
+        self.custom().is_none().then_some(self.kind)
+    }
+
+    /// What the law has to know of its leaders.
+    pub fn knows(&self) -> Knowledge {
+        match (self.custom(), self.kind) {
+            (Some(law), _) => law.declaration().knows,
+            (None, LawKind::FullState) => Knowledge::Motion,
+            (None, LawKind::RobustState) => Knowledge::Rates,
+            (None, LawKind::OutputFeedback) => Knowledge::Output,
+        }
+    }
+
+    /// Whether it takes the rates of distance and bearing from the observer.
+    pub fn observes(&self) -> bool {
+        self.knows() == Knowledge::Output
+    }
+
+    /// How many leaders it looks at.
+    pub fn leaders(&self) -> usize {
+        self.custom().map_or(1, |law| law.declaration().leaders)
+    }
+
+    /// Values of the custom law's parameters, in the order of its declaration; empty for a built-in law.
+    pub fn values(&self) -> Vec<f64> {
+        let declared = self.custom().map_or(&[][..], |law| &law.declaration().parameters);
+        let value = |parameter: &Parameter| {
+            self.parameters.get(&parameter.name).copied().unwrap_or(parameter.default)
+        };
+        declared.iter().map(value).collect()
+    }
+
     /// The gains that fit a kind of vehicle: the paper's for a unicycle; on wheels they were found with `echelon tune`
     /// and rounded.
     pub fn fitting(kind: VehicleKind) -> Self {

@@ -20,6 +20,7 @@ mod sensing;
 mod set_point;
 mod stage;
 mod vehicle;
+mod written_law;
 
 pub use change::Change;
 pub use event::{Event, Failure, HandOver, Happening, Holds, Joining, Place, Recovery, Trigger, When};
@@ -37,6 +38,7 @@ pub use safety::{Proximity, Safety};
 pub use sensing::{Sensing, SensingKind, Vision};
 pub use stage::{Environment, Views};
 pub use vehicle::{Compensation, Vehicle, VehicleKind};
+pub use written_law::{LawSource, WrittenLaw};
 
 pub(crate) use event::HandOverPart;
 pub(crate) use expect::ExpectPart;
@@ -118,7 +120,8 @@ impl Scene {
         load::parse(text, path.as_ref(), overrides)
     }
 
-    /// The scene as TOML with every default written out; it loads again to an equal scene.
+    /// The scene as TOML with every default written out, and with the texts of laws that have files of their own; it loads
+    /// again to an equal scene.
     pub fn to_toml(&self) -> String {
         /// A scene as a file has it.
         #[derive(Serialize)]
@@ -127,8 +130,19 @@ impl Scene {
             #[serde(flatten)]
             scene: &'a Scene,
         }
+        let mut scene = self.clone();
+        scene.for_every_robot(|robot| {
+            if let Role::Follow(follow) = &mut robot.role {
+                follow.law = follow.law.in_scene();
+            }
+        });
+        for event in &mut scene.events {
+            if let Happening::Follow { joins: Some(joins), .. } = &mut event.happening {
+                joins.law = joins.law.in_scene();
+            }
+        }
         // A checked scene holds nothing that TOML cannot write, as the round trips of the tests show.
-        toml::to_string(&File { schema: SCHEMA_VERSION, scene: self }).unwrap_or_default()
+        toml::to_string(&File { schema: SCHEMA_VERSION, scene: &scene }).unwrap_or_default()
     }
 
     /// What has to be set to come from this scene to `other` while a run goes, robot by robot in the words of `--set`:

@@ -2,7 +2,7 @@
 
 use crate::{Error, SceneRun};
 use scene::{Follow, Role, Scene, SensingKind};
-use vocabulary::{LawKind, ObserverKind, TimeMode};
+use vocabulary::{ObserverKind, TimeMode};
 
 /// How followers sense in one run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,7 +126,7 @@ pub fn check(scene: &Scene) -> Result<(), Error> {
                     `bearing`";
         return Err(Error::Usage(text.to_owned()));
     }
-    let other = |(_, follow): &(&str, &Follow)| follow.law.kind != LawKind::OutputFeedback;
+    let other = |(_, follow): &(&str, &Follow)| !follow.law.observes();
     if let Some((name, _)) = scene.followers().find(other) {
         return Err(Error::Usage(format!(
             "`{name}` does not follow by output feedback, and other laws need more than measurements tell: write `law = {{ \

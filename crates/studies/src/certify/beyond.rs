@@ -83,7 +83,8 @@ impl SensitivityCost {
 }
 
 fn chart(scene: &Scene) -> Option<StabilityChart> {
-    let (name, follow) = scene.followers().find(|(_, follow)| follow.law.kind == LawKind::OutputFeedback)?;
+    let (name, follow) =
+        scene.followers().find(|(_, follow)| follow.law.built_in() == Some(LawKind::OutputFeedback))?;
     let (k, observer) = (follow.law.k[0], &follow.observer);
     // The slope of the sign is not a number; near its set point only K acts then.
     let smooth = follow.law.switching == SwitchingKind::Tanh;

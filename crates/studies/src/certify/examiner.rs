@@ -1,10 +1,11 @@
 //! Goes along with a run and certifies its edges.
 
+use crate::certify::measured::MeasuredTracking;
 use formation::certificate::{
     Circumstances, Constants, Instant, Premise, Statement, StatementFinding, StatementOutcome, Witness,
     certify,
 };
-use formation::{EdgeLaw, Estimate, SetPointTrajectory, Switching};
+use formation::{Custom, EdgeLaw, Estimate, SetPointTrajectory, Switching};
 use metrics::{CertificateMetrics, StatementMetrics};
 use scene::Scene;
 use simulation::Simulation;
@@ -33,6 +34,10 @@ pub struct Certificate {
     /// What tanh in place of sign leaves of the error where the leader goes on as at the end of the stretch, [m, rad]:
     /// k² e + β tanh(slope e) = g_v V_i; `None` for other laws.
     pub smoothing: Option<[f64; 2]>,
+    /// Whether a custom law takes the place of the paper's, of which alone the statements speak.
+    pub custom: bool,
+    /// What holds for any law.
+    pub measured: MeasuredTracking,
 }
 
 impl Certificate {
@@ -91,6 +96,8 @@ struct CertifiedStretch {
     witness: Witness,
     set_point: SetPointTrajectory,
     measures: bool,
+    custom: Option<Custom>,
+    measured: MeasuredTracking,
     rough_leader: Option<f64>,
     /// Of the bearing's set point, rad/s, where it moves with a path's heading.
     last_rate: Option<f64>,
@@ -107,6 +114,8 @@ impl CertifiedStretch {
             witness: if keeps { witness.keeping() } else { witness },
             set_point: law.set_point.clone(),
             measures: law.tracker.is_some(),
+            custom: law.custom.clone(),
+            measured: MeasuredTracking::default(),
             rough_leader: None,
             last_rate: None,
             final_error: [0.0; 2],
@@ -122,6 +131,7 @@ impl CertifiedStretch {
             && self.witness.observer == law.observer
             && self.set_point == law.set_point
             && self.measures == law.tracker.is_some()
+            && self.custom == law.custom
     }
 }
 
@@ -174,6 +184,8 @@ impl Examiner {
             let stretch = &mut self.edges[index];
             stretch.rough_leader = stretch.rough_leader.or(rough);
             stretch.final_error = record.edges[index].error;
+            let speed = record.snapshot.robots[edge.follower].motion.speed;
+            stretch.measured.push(&record.edges[index], speed, self.period);
             let mut now = instant(simulation, index, *edge, law, &drives);
             if law.law.heading.filter().is_some() {
                 let change = |before: f64, now: f64| (now - before) / self.period;
@@ -212,23 +224,29 @@ impl Examiner {
             held: (self.mode != TimeMode::Continuous).then_some(self.period),
             sampled_measurement: self.mode == TimeMode::Measured,
             measures: stretch.measures,
+            custom: stretch.custom.is_some(),
             wheels: wheels(edge.leader) || wheels(edge.follower),
             several_leaders: several,
             rough_leader: stretch.rough_leader,
         };
         let law = &witness.law;
         let effect = witness.last_effect();
-        let smoothed = law.kind != LawKind::FullState && matches!(law.switching, Switching::Tanh(_));
+        let custom = stretch.custom.is_some();
+        let smoothed =
+            !custom && law.kind != LawKind::FullState && matches!(law.switching, Switching::Tanh(_));
         Certificate {
             edge: index,
             pair: Edge { leader: stretch.leader, ..edge },
             span: witness.span().unwrap_or_default(),
             findings: certify(witness, &circumstances),
-            constants: Constants::of(witness).filter(|_| law.kind == LawKind::OutputFeedback && !several),
+            constants: Constants::of(witness)
+                .filter(|_| !custom && !several && law.kind == LawKind::OutputFeedback),
             final_error: stretch.final_error,
             smoothing: smoothed
                 .then(|| [0, 1].map(|i| formation::certificate::chain::residual(law, i, effect[i]))),
             witness: witness.clone(),
+            custom,
+            measured: stretch.measured,
         }
     }
 
@@ -260,8 +278,8 @@ impl Examiner {
         }
         if self.mode == TimeMode::Continuous {
             let Some(above) = above else { return false };
-            let law = &formation.laws()[above].law;
-            let sign = law.kind != LawKind::FullState && law.switching == Switching::Sign;
+            let EdgeLaw { law, custom, .. } = &formation.laws()[above];
+            let sign = custom.is_none() && law.kind != LawKind::FullState && law.switching == Switching::Sign;
             return sign || simulation.record().edges[above].limited;
         }
         let (Some(last), Some(now)) = (self.last.get(edge.leader), drives.get(edge.leader)) else {

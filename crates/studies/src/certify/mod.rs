@@ -6,6 +6,7 @@
 pub mod beyond;
 pub mod chain;
 mod examiner;
+mod measured;
 mod past;
 pub mod reach;
 pub mod sensitivity;
@@ -17,6 +18,7 @@ pub use formation::certificate::{
     Constants, Premise, Statement, StatementFinding, StatementOutcome, WitnessRow,
 };
 pub use formation::feasible::Infeasible;
+pub use measured::MeasuredTracking;
 pub use past::{rows, so_far};
 
 use crate::{Error, STRIDE, SceneRun};

@@ -23,6 +23,7 @@ pub fn so_far(
     let circumstances = Circumstances {
         held: held.then_some(scene.time.period),
         sampled_measurement: scene.time.mode == TimeMode::Measured,
+        custom: follow.law.custom().is_some(),
         measures: follow.sensing.kind != SensingKind::Truth,
         wheels: wheels(edge.leader) || wheels(edge.follower),
         several_leaders: follow.leaders.are_several(),

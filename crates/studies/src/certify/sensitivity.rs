@@ -58,16 +58,17 @@ impl Gain {
     /// Whether a follower's law uses it.
     fn acts_on(self, follow: &Follow) -> bool {
         match self {
-            Self::K(_) => true,
-            Self::Beta(_) => follow.law.kind != LawKind::FullState,
-            Self::Slope(_) => {
-                follow.law.kind != LawKind::FullState && follow.law.switching == SwitchingKind::Tanh
-            }
-            Self::Epsilon(_) | Self::Alpha1(_) | Self::Alpha2(_) => {
-                follow.law.kind == LawKind::OutputFeedback
-            }
+            Self::K(_) => follow.law.built_in().is_some(),
+            Self::Beta(_) => is_robust(follow),
+            Self::Slope(_) => is_robust(follow) && follow.law.switching == SwitchingKind::Tanh,
+            Self::Epsilon(_) | Self::Alpha1(_) | Self::Alpha2(_) => follow.law.observes(),
         }
     }
+}
+
+/// Whether a follower's law has a switching term.
+fn is_robust(follow: &Follow) -> bool {
+    follow.law.built_in().is_some_and(|kind| kind != LawKind::FullState)
 }
 
 /// What one gain does, when it is changed on all edges together.

@@ -1,6 +1,7 @@
 //! Panels without a window: what they show, by what names it is found, and what hands on them ask for.
 
 mod gains;
+mod laws;
 mod places;
 mod safety;
 mod seeing;

@@ -176,7 +176,7 @@ fn an_edge_tells_what_comes() {
 fn branches_are_shown_with_their_changes() {
     let mut rig = Rig::new(THREE);
     rig.steps(50);
-    let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k", value: Some("5.0".to_owned()) };
+    let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k".into(), value: Some("5.0".to_owned()) };
     rig.act(&[Action::Seek(0.2), gain]);
     rig.steps(10);
     let mut panel = panel(rig.app_state, branches::show);

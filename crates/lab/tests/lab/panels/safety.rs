@@ -43,7 +43,7 @@ fn barriers_are_shown_tuned_and_explained() {
     panel.get_by_role_and_label(Role::Slider, "View angle").set_value_accesskit(30.0);
     let actions = super::asked(&mut panel);
     let Some(Action::Tune { key, value: Some(value), .. }) = actions.first() else { panic!("{actions:?}") };
-    assert_eq!((*key, &**value), ("safety.view_angle", "\"30.0 deg\""));
+    assert_eq!((&**key, &**value), ("safety.view_angle", "\"30.0 deg\""));
 }
 
 #[test]
@@ -64,7 +64,7 @@ fn every_key_that_is_live_changes_while_the_run_goes() {
         ("view_angle", "0.4"),
     ] {
         let key = symbol_key(key);
-        edit(vec![Action::Tune { what: "x".to_owned(), key, value: Some(value.to_owned()) }]);
+        edit(vec![Action::Tune { what: "x".to_owned(), key: key.into(), value: Some(value.to_owned()) }]);
     }
     for name in ["Keep the leader near", "Stay within an arena", "Filter commands"] {
         let actions = click(&mut panel, Role::CheckBox, name);
@@ -108,7 +108,8 @@ fn one_robot_is_tuned_or_all_and_a_robot_that_leads_is_one() {
     assert_eq!(leads(&panel.state().app_state), [true, false, false]);
     let state = &mut panel.state_mut().app_state;
     state.act(&Action::ForAll(true));
-    let margin = Action::Tune { what: "m".to_owned(), key: "safety.margin", value: Some("0.12".to_owned()) };
+    let margin =
+        Action::Tune { what: "m".to_owned(), key: "safety.margin".into(), value: Some("0.12".to_owned()) };
     state.act(&margin);
     let robots = &state.scene_now().expect("a scene").robots;
     assert!(robots.iter().all(|robot| robot.safety.margin == Some(0.12)));
@@ -143,7 +144,11 @@ fn words_and_room_are_those_of_the_shown_time_and_branch() {
     rig.act(&[Action::Seek(2.0)]);
     says(&mut rig, &["robot-3 drives as decided"]);
     // In the past a change is a branch of its own; there the filter is off, and on the first it is not.
-    rig.act(&[Action::Tune { what: "f".to_owned(), key: "safety.filter", value: Some("false".to_owned()) }]);
+    rig.act(&[Action::Tune {
+        what: "f".to_owned(),
+        key: "safety.filter".into(),
+        value: Some("false".to_owned()),
+    }]);
     rig.steps(3);
     assert_eq!(rig.app_state.branch, 1);
     let record = rig.app_state.record().expect("a moment");

@@ -101,7 +101,11 @@ fn more_is_in_a_menu() {
         |bar: &Panel| words.map(|word| bar.get_by_label_contains(word).accesskit_node().is_disabled());
     assert_eq!(disabled(&open(app_state(THREE, 5))), [true; 4]);
     let mut app_state = app_state(THREE, 5);
-    app_state.act(&Action::Tune { what: "Gain".to_owned(), key: "law.k", value: Some("5.0".to_owned()) });
+    app_state.act(&Action::Tune {
+        what: "Gain".to_owned(),
+        key: "law.k".into(),
+        value: Some("5.0".to_owned()),
+    });
     let mut bar = open(app_state);
     assert_eq!(disabled(&bar), [false, true, false, true]);
     bar.get_by_label_contains("Undo").click();
@@ -167,7 +171,7 @@ fn a_click_on_a_curve_looks_at_its_time() {
 fn curves_are_those_of_the_run() {
     let mut rig = Rig::new(THREE);
     rig.steps(100);
-    let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k", value: Some("5.0".to_owned()) };
+    let gain = Action::Tune { what: "Gain".to_owned(), key: "law.k".into(), value: Some("5.0".to_owned()) };
     rig.act(&[Action::Seek(0.5), gain, Action::NameBranch(0, "a, b".to_owned())]);
     rig.steps(50);
     let table = csv(&rig.app_state);

@@ -1,0 +1,142 @@
+//! Custom laws in scenes: their files, their texts, and values of their parameters.
+
+use crate::files::read_text;
+use crate::text::{Form, Node, Reporter, Span, Value, form::Text, words::instead_of};
+use crate::types::{LawSource, WrittenLaw};
+use laws::{Declaration, LawFile, Mistake, Place, shipped};
+use serde_json::{Value as Json, json};
+use std::collections::BTreeMap;
+
+/// Most characters of a law that is written in a scene.
+pub(crate) const LAW_TEXT: usize = 100_000;
+
+/// Keys of which the one that is set last says which law a follower has.
+pub(crate) const LAW_CHOICE: [&str; 3] = ["kind", "file", "text"];
+
+/// The keys of a table called `table` that lose their meaning where `key` is set.
+pub(crate) fn replaced_by(table: &str, key: &str) -> impl Iterator<Item = &'static str> {
+    let chooses = table == "law" && LAW_CHOICE.contains(&key);
+    LAW_CHOICE.into_iter().filter(move |other| chooses && *other != key)
+}
+
+/// The name of a law file beside the scene, else of one that comes with the program.
+pub(crate) struct LawFileForm;
+
+/// The text of a law.
+pub(crate) struct LawTextForm;
+
+/// Values of a law's parameters, by their names.
+pub(crate) struct ParametersForm;
+
+impl Form for LawFileForm {
+    type Out = Option<WrittenLaw>;
+
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
+        let name = reporter.expect(node.as_text(), node, || "the name of a law file".to_owned())?;
+        let path = reporter.beside_scene(name);
+        if let Some(law) = shipped(name).filter(|_| !path.exists()) {
+            return compiled(LawSource::Shipped(name.to_owned()), name.to_owned(), law.text, reporter)
+                .map(Some);
+        }
+        match read_text(&path) {
+            Ok(text) => {
+                reporter.files.push(path.clone());
+                compiled(LawSource::File(name.to_owned()), path.display().to_string(), &text, reporter)
+                    .map(Some)
+            }
+            Err(fault) => {
+                let known = laws::SHIPPED_LAWS.iter().map(|law| law.name);
+                reporter.report(node.span, format!("{}: {fault}{}", path.display(), instead_of(name, known)));
+                None
+            }
+        }
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "string" })
+    }
+}
+
+impl Form for LawTextForm {
+    type Out = Option<WrittenLaw>;
+
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
+        let text = Text(LAW_TEXT).read(node, reporter)?;
+        // Where a change of the law writes it, its ends are trimmed.
+        compiled(LawSource::Scene, "law.text".to_owned(), text.trim(), reporter).map(Some)
+    }
+
+    fn schema(&self) -> Json {
+        Text(LAW_TEXT).schema()
+    }
+}
+
+/// The law of a text, or `None` after reporting its mistakes where they stand.
+fn compiled(source: LawSource, origin: String, text: &str, reporter: &mut Reporter) -> Option<WrittenLaw> {
+    match LawFile::compile(text) {
+        Ok(law) => Some(WrittenLaw::new(source, text, law)),
+        Err(mistakes) => {
+            let number = reporter.add_source(origin, text);
+            for Mistake { place, end, message } in mistakes {
+                let [start, end] = [place, end].map(|place| offset(text, place));
+                reporter.report(Span { source: number, start, end: end.max(start) }, message);
+            }
+            None
+        }
+    }
+}
+
+/// The byte of `text` at a place.
+fn offset(text: &str, place: Place) -> usize {
+    let line = place.line.saturating_sub(1) as usize;
+    let start = match line {
+        0 => 0,
+        _ => text.match_indices('\n').nth(line - 1).map_or(text.len(), |(at, _)| at + 1),
+    };
+    let within = text[start..].char_indices().nth(place.column.saturating_sub(1) as usize);
+    within.map_or(text.len(), |(at, _)| start + at)
+}
+
+impl Form for ParametersForm {
+    type Out = BTreeMap<String, f64>;
+
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
+        let entries = reporter.expect(node.as_table(), node, || "a table of numbers by name".to_owned())?;
+        let mut values = BTreeMap::new();
+        for entry in entries {
+            let number = match entry.node.value {
+                Value::Number(value) => Some(value),
+                Value::Integer(value) => Some(value as f64),
+                _ => None,
+            };
+            let value = number.filter(|value| value.is_finite());
+            let value = reporter
+                .inside(&entry.key, |reporter| reporter.expect(value, &entry.node, || "a number".to_owned()));
+            values.insert(entry.key.clone(), value?);
+        }
+        Some(values)
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "type": "object", "additionalProperties": { "type": "number" } })
+    }
+}
+
+/// What is wrong with values for the parameters of a law: the names that it does not have, and the values out of range.
+pub(crate) fn faults(values: &BTreeMap<String, f64>, law: &WrittenLaw) -> Vec<String> {
+    let Declaration { parameters, .. } = law.declaration();
+    let fault = |(name, value): (&String, &f64)| {
+        let Some(parameter) = parameters.iter().find(|parameter| parameter.name == *name) else {
+            let known = parameters.iter().map(|parameter| parameter.name.as_str());
+            let hint = instead_of(name, known);
+            return Some(format!("{} has no parameter `{name}`{hint}", law.name()));
+        };
+        let [low, high] = parameter.range;
+        let unit = parameter.unit.to_string();
+        let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
+        (!(low..=high).contains(value)).then(|| {
+            format!("`{name}` must be from {low} to {high}{unit}, as {} says, not {value}", law.name())
+        })
+    };
+    values.iter().filter_map(fault).collect()
+}

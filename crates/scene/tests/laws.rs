@@ -1,0 +1,140 @@
+//! Custom laws in scenes: where their text comes from, what is checked of it, and how it is changed while a run goes.
+
+use scene::{Law, LawSource, Scene, SceneText};
+use std::fs;
+use vocabulary::LawKind;
+
+const THREE: &str = include_str!("../../../scenes/circle-three.toml");
+
+/// A law with two parameters and a memory.
+const LAW: &str = "# Proportional\nknows rates\nparameter k = 2 [1/s] in 0.5 .. 8 \"gain\"\nparameter c = 1 [m/s] in 0 .. 3 \"pace\"
+memory n = 0\nn = n + 1\ncommand = k * (c - own.speed), 0\n";
+
+/// The scene of three with lines added to it and overrides.
+fn parse(lines: &str, set: &[&str]) -> Result<Scene, String> {
+    let set: Vec<_> = set.iter().map(|set| set.parse().expect("an override")).collect();
+    let loaded = Scene::parse(&format!("{THREE}\n{lines}"), "t.toml", &set);
+    loaded.map(|loaded| loaded.scene).map_err(|faults| faults.to_string())
+}
+
+fn law<'a>(scene: &'a Scene, name: &str) -> &'a Law {
+    let mut followers = scene.followers();
+    &followers.find(|(follower, _)| *follower == name).expect("a follower").1.law
+}
+
+/// A law table with the text of a law.
+fn table(law: &str) -> String {
+    format!("[law]\ntext = '''\n{law}'''\n")
+}
+
+#[test]
+fn a_law_comes_from_a_file_beside_the_scene_from_the_program_or_stands_in_the_scene() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("t.toml");
+    fs::write(folder.path().join("mine.law"), LAW).expect("a file");
+    fs::write(&path, format!("{THREE}\n[law]\nfile = \"mine.law\"\nparameters = {{ k = 4 }}\n"))
+        .expect("a file");
+    let loaded = Scene::load(&path, &[]).expect("a scene");
+    assert_eq!(loaded.files, [path, folder.path().join("mine.law")]);
+    let own = law(&loaded.scene, "follower-1");
+    assert_eq!(own.custom().map(|law| law.source().clone()), Some(LawSource::File("mine.law".to_owned())));
+    assert_eq!((own.values(), own.built_in(), own.leaders()), (vec![4.0, 1.0], None, 1));
+
+    let shipped = parse("[law]\nfile = \"robust-state\"\n", &[]).expect("a scene");
+    let name = law(&shipped, "follower-1").custom().map(|law| law.name().to_owned());
+    assert_eq!(name.as_deref(), Some("robust-state"));
+
+    let within = parse(&table(LAW), &["law.parameters.c=2"]).expect("a scene");
+    assert_eq!(law(&within, "follower-2").values(), [2.0, 2.0]);
+}
+
+#[test]
+fn a_scene_is_written_with_the_text_of_its_laws_and_reads_back() {
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("mine.law"), LAW).expect("a file");
+    let text = format!("{THREE}\n[law]\nfile = \"mine.law\"\nparameters = {{ k = 4 }}\n");
+    let scene = Scene::parse(&text, folder.path().join("t.toml"), &[]).expect("a scene").scene;
+    let alone = Scene::parse(&scene.to_toml(), "elsewhere.toml", &[]).expect("the same scene").scene;
+    assert_eq!(
+        law(&alone, "follower-1").custom().map(|law| law.text().to_owned()),
+        Some(LAW.trim().to_owned())
+    );
+    assert_eq!(law(&alone, "follower-1").values(), [4.0, 1.0]);
+    let mut edited = SceneText::parse(&text).expect("TOML");
+    edited.embed_laws(&scene);
+    let embedded = Scene::parse(&edited.text(), "elsewhere.toml", &[]).expect("the same scene");
+    assert_eq!((embedded.files.len(), &embedded.scene), (1, &alone));
+}
+
+#[test]
+fn what_is_set_last_or_nearest_to_the_robot_chooses_the_law() {
+    let both = table(LAW);
+    let kinds = |set: &[&str]| {
+        let scene = parse(&both, set).expect("a scene");
+        ["follower-1", "follower-2"].map(|name| law(&scene, name).built_in())
+    };
+    assert_eq!(kinds(&[]), [None, None]);
+    assert_eq!(kinds(&["law.kind=full-state"]), [Some(LawKind::FullState); 2]);
+    let one = "robots.follower-1.law.kind=full-state";
+    assert_eq!(kinds(&[one]), [Some(LawKind::FullState), None]);
+    assert_eq!(kinds(&[one, "robots.follower-1.law.file=integral"]), [None, None]);
+    // Parameters belong to a law: one of its own begins with its defaults.
+    let scene =
+        parse(&both, &["law.parameters.k=4", "robots.follower-1.law.file=integral"]).expect("a scene");
+    assert_eq!(law(&scene, "follower-1").values(), [5.0, 5.0, 1.0]);
+    let scene =
+        parse(&both, &["law.parameters.k=4", "robots.follower-1.law.parameters.c=0.5"]).expect("a scene");
+    assert_eq!(law(&scene, "follower-1").values(), [4.0, 0.5]);
+    // The text of a scene follows the same rule.
+    let mut text = SceneText::parse(&format!("{THREE}\n{both}")).expect("TOML");
+    text.set("law.file", "integral").expect("an edit");
+    assert!(!text.text().contains("Proportional") && text.text().contains("file = \"integral\""));
+    text.set("law.text", LAW).expect("an edit");
+    assert!(
+        !text.text().contains("file = ") && text.text().contains("\nparameter k = 2 [1/s]"),
+        "{}",
+        text.text()
+    );
+}
+
+#[test]
+fn every_mistake_has_its_place_and_says_what_would_be_right() {
+    let wrong = LAW.replace("k * (c", "k * (leader.distance").replace("knows rates", "knows rats");
+    for (lines, set, words) in [
+        (table(&wrong), vec![], vec!["law.text:2:7", "law.text:7:", "rates", "m/s"]),
+        (table(LAW), vec!["law.parameters.kk=4"], vec!["no parameter `kk`", "did you mean `k`"]),
+        (table(LAW), vec!["law.parameters.k=40"], vec!["`k` must be from 0.5 to 8 1/s", "not 40"]),
+        (table(LAW), vec!["law.parameters.k=fast"], vec!["`k` must be a number"]),
+        (table(LAW), vec!["sensing.kind=noise"], vec!["law.text", "`knows`"]),
+        (String::new(), vec!["law.parameters.k=4"], vec!["`parameters`", "custom law"]),
+        (String::new(), vec!["law.file=integrl"], vec!["no such file", "did you mean `integral`"]),
+        (table(""), vec![], vec!["law.text", "command"]),
+    ] {
+        let fault = parse(&lines, &set).expect_err("must be refused");
+        for word in words {
+            assert!(fault.contains(word), "{set:?}: {fault}");
+        }
+    }
+}
+
+#[test]
+fn a_law_may_change_while_a_run_goes() {
+    let scene = |set: &[&str]| parse(&table(LAW), set).expect("a scene");
+    let faster = LAW.replace("k * (c", "2 * k * (c");
+    let text = format!("law.text={faster}");
+    for (set, words) in [
+        (vec!["law.parameters.k=4"], "law.parameters={ k = 4.0 }"),
+        (vec!["law.kind=output-feedback"], "law.kind=output-feedback"),
+        (vec!["law.file=integral"], "law.file=integral"),
+        (vec![&*text], "law.text=# Proportional\nknows rates"),
+    ] {
+        let next = scene(&set);
+        let sets = scene(&[]).sets_to(&next).expect("a change");
+        let begins = format!("robots.follower-1.{words}");
+        assert!(sets.iter().any(|set| set.starts_with(&begins)), "{sets:?}");
+        // What leads there in words does so when it is read.
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        assert_eq!(scene(&sets).robots, next.robots);
+    }
+    assert_eq!(scene(&[]).sets_to(&scene(&[])).expect("no change"), Vec::<String>::new());
+}
