@@ -213,7 +213,9 @@ fn driven(
         let Command { acceleration, turn_rate } = Limits::PAPER.saturate(asked, own.motion.speed);
         own.motion.acceleration = Limits::PAPER.admissible(acceleration, own.motion.speed);
         own.motion.turn_rate = turn_rate;
-        leaders.iter_mut().for_each(|leader| leader.drive(period));
+        for leader in leaders.iter_mut() {
+            leader.drive(period);
+        }
         own.drive(period);
     }
     errors

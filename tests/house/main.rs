@@ -76,6 +76,7 @@ const ARROWS: [(&str, &[&str]); 20] = [
         &[
             "vocabulary",
             "output",
+            "laws",
             "scene",
             "studies",
             "metrics",

@@ -17,6 +17,7 @@ mod film;
 mod interrupt;
 mod junit;
 mod lab;
+mod laws;
 mod link;
 mod load;
 mod picture;
@@ -51,6 +52,7 @@ fn main() -> ExitCode {
                 | Subcommands::Compare(_)
                 | Subcommands::Check(_)
                 | Subcommands::Scenes(_)
+                | Subcommands::Laws(_)
                 | Subcommands::Schema
                 | Subcommands::Completions { .. }
         )
@@ -79,6 +81,7 @@ fn main() -> ExitCode {
         Some(Subcommands::Accuracy(args)) => accuracy::accuracy(&args),
         Some(Subcommands::Check(args)) => check::check(&args),
         Some(Subcommands::Scenes(args)) => scenes::scenes(&args),
+        Some(Subcommands::Laws(args)) => laws::laws(&args),
         Some(Subcommands::Schema) => {
             print::schema();
             Ok(())

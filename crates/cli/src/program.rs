@@ -1,8 +1,8 @@
 //! The program and its subcommands, as clap reads them.
 
 use crate::{
-    accuracy, budget, capture, certify, check, compare, dataset, diff, doctor, figures, film, lab, link,
-    replay, run, scenes, stills, tune,
+    accuracy, budget, capture, certify, check, compare, dataset, diff, doctor, figures, film, lab, laws,
+    link, replay, run, scenes, stills, tune,
 };
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
@@ -54,6 +54,8 @@ pub(crate) enum Subcommands {
     Check(check::CheckArgs),
     /// List the shipped scenes, or print one to start from
     Scenes(scenes::ScenesArgs),
+    /// List, check, start and test custom laws
+    Laws(laws::LawsArgs),
     /// Print the JSON Schema of scene files
     Schema,
     /// Report this machine's graphics adapters, drivers and encoders, and what is missing

@@ -9,6 +9,7 @@
 
 pub mod assignment;
 pub mod certificate;
+pub mod closed_loop;
 pub mod column;
 mod custom;
 pub mod energy;

@@ -1,11 +1,13 @@
 //! Custom laws in scenes: their files, their texts, and values of their parameters.
 
+use crate::Diagnostics;
 use crate::files::read_text;
 use crate::text::{Form, Node, Reporter, Span, Value, form::Text, words::instead_of};
 use crate::types::{LawSource, WrittenLaw};
-use laws::{Declaration, LawFile, Mistake, Place, shipped};
+use laws::{Declaration, LawFile, Mistake, Place, SHIPPED_LAWS, shipped};
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Most characters of a law that is written in a scene.
 pub(crate) const LAW_TEXT: usize = 100_000;
@@ -45,7 +47,7 @@ impl Form for LawFileForm {
                     .map(Some)
             }
             Err(fault) => {
-                let known = laws::SHIPPED_LAWS.iter().map(|law| law.name);
+                let known = SHIPPED_LAWS.iter().map(|law| law.name);
                 reporter.report(node.span, format!("{}: {fault}{}", path.display(), instead_of(name, known)));
                 None
             }
@@ -69,6 +71,27 @@ impl Form for LawTextForm {
     fn schema(&self) -> Json {
         Text(LAW_TEXT).schema()
     }
+}
+
+/// The law of the file at `path`, or of that name among those that come with the program.
+///
+/// # Errors
+/// Everything that is wrong with the file.
+pub fn load_law(path: &Path) -> Result<WrittenLaw, Diagnostics> {
+    let mut reporter = Reporter::new(Path::new(""));
+    let name = path.display().to_string();
+    let known = path.to_str().and_then(shipped).filter(|_| !path.exists());
+    let law = if let Some(law) = known {
+        compiled(LawSource::Shipped(name.clone()), name, law.text, &mut reporter)
+    } else {
+        let text = read_text(path).map_err(|fault| {
+            let known = SHIPPED_LAWS.iter().map(|law| law.name);
+            let hint = if path.exists() { String::new() } else { instead_of(&name, known) };
+            Diagnostics::whole_file(path, fault + &hint)
+        })?;
+        compiled(LawSource::File(name.clone()), name, &text, &mut reporter)
+    };
+    law.ok_or_else(|| reporter.into_diagnostics())
 }
 
 /// The law of a text, or `None` after reporting its mistakes where they stand.

@@ -46,6 +46,7 @@ mod vehicle;
 
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use edit::{ChangeText, EditError, SceneText, toml_text};
+pub use law_file::load_law;
 pub use link::{Link, LinkError, LinkOrigin, LinkProof, LinkedScene, TimedOverride};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};

@@ -39,6 +39,7 @@ pub mod tune;
 pub mod verdict;
 
 pub use error::Error;
+pub use formation::closed_loop::{LoopEnd, Pole, SteadyLeaders, close};
 #[cfg(not(target_family = "wasm"))]
 pub use record_source::RecordSource;
 #[cfg(not(target_family = "wasm"))]

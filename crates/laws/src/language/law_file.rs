@@ -58,6 +58,15 @@ impl LawFile {
     }
 }
 
+/// The same text is the same law.
+impl PartialEq for LawFile {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+impl Eq for LawFile {}
+
 /// Something that is done with as few registers as will do: they have to be cleared.
 trait RegisterUse {
     type Outcome;
@@ -205,4 +214,28 @@ impl RegisterUse for Derivation<'_> {
 fn finite_command(law: &CheckedLaw, registers: &[f64]) -> Option<Command> {
     let [acceleration, turn_rate] = law.command.map(|register| registers[usize::from(register)]);
     (acceleration.is_finite() && turn_rate.is_finite()).then_some(Command { acceleration, turn_rate })
+}
+
+#[cfg(test)]
+impl super::interpreter::Watch for u64 {
+    fn executed(&mut self) {
+        *self += 1;
+    }
+
+    fn before(&mut self, _: usize, _: &super::code::Instruction, _: f64, _: &[f64]) {}
+}
+
+#[cfg(test)]
+impl LawFile {
+    /// How many instructions a sample executes.
+    pub(super) fn executed(&self, input: &Input<'_>) -> u64 {
+        let code = &self.law.step;
+        let mut registers = [0.0; 512];
+        let parameters: Vec<f64> =
+            self.law.declaration.parameters.iter().map(|parameter| parameter.default).collect();
+        code.fill(&mut registers, input, &parameters, &vec![0.0; code.memory]);
+        let mut count = 0;
+        run(code, &mut registers, input.noise, &mut count);
+        count
+    }
 }

@@ -1,0 +1,336 @@
+//! `echelon laws`: custom laws that come with the program, and what a law file is and does.
+
+use crate::Outcome;
+use crate::failure::Failure;
+use crate::print::{json, note, say, verbatim};
+use clap::{Args, Subcommand};
+use laws::{CustomLaw, Declaration, Knowledge, LawFile, Parameter, SHIPPED_LAWS, Scale, TEMPLATE, shipped};
+use scene::{WrittenLaw, load_law};
+use serde_json::{Value, json};
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use studies::{LoopEnd, Pole, SteadyLeaders, close};
+use vocabulary::{counted, math};
+
+#[derive(Debug, Args)]
+pub(crate) struct LawsArgs {
+    #[command(subcommand)]
+    what: Option<LawsCommand>,
+    /// Print as JSON
+    #[arg(long, global = true)]
+    json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum LawsCommand {
+    /// List the laws that come with the program (the default)
+    List,
+    /// Print the text of a law that comes with the program: echelon laws show integral > mine.law
+    Show {
+        /// Its name
+        #[arg(value_name = "NAME")]
+        name: String,
+    },
+    /// Say what is wrong with law files, or what they declare
+    Check {
+        /// Law files, or names of laws that come with the program
+        #[arg(value_name = "LAW", required = true)]
+        laws: Vec<PathBuf>,
+    },
+    /// Write a law to start from
+    New {
+        /// The file; it must not be there yet
+        #[arg(value_name = "FILE")]
+        file: PathBuf,
+    },
+    /// Let one unicycle follow by a law, and print where it settles and the poles of the loop there
+    Test(TestArgs),
+}
+
+#[derive(Debug, Args)]
+struct TestArgs {
+    /// A law file, or the name of a law that comes with the program
+    #[arg(value_name = "LAW")]
+    law: PathBuf,
+    /// Set a parameter, such as k=3
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Wanted distance from every leader, m
+    #[arg(long, value_name = "METRES", default_value_t = 2.0)]
+    distance: f64,
+    /// Wanted bearing from the leader, degrees; left free behind several leaders
+    #[arg(long, value_name = "DEGREES", default_value_t = -135.0, allow_negative_numbers = true)]
+    bearing: f64,
+    /// Speed of the leaders, m/s
+    #[arg(long, value_name = "M/S", default_value_t = 1.0)]
+    speed: f64,
+    /// Their turn rate, rad/s
+    #[arg(long, value_name = "RAD/S", default_value_t = 0.0, allow_negative_numbers = true)]
+    turn_rate: f64,
+    /// Control period, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.01)]
+    period: f64,
+}
+
+pub(crate) fn laws(args: &LawsArgs) -> Outcome {
+    match &args.what {
+        None | Some(LawsCommand::List) => {
+            list(args.json);
+            Ok(())
+        }
+        Some(LawsCommand::Show { name }) => show(name),
+        Some(LawsCommand::Check { laws }) => check(laws, args.json),
+        Some(LawsCommand::New { file }) => new(file),
+        Some(LawsCommand::Test(test)) => self::test(test, args.json),
+    }
+}
+
+fn list(as_json: bool) {
+    let declared = SHIPPED_LAWS.iter().filter_map(|law| {
+        let compiled = LawFile::compile(law.text).ok()?;
+        Some((law.name, compiled.declaration().clone()))
+    });
+    if as_json {
+        let law = |(name, declaration): (&str, Declaration)| {
+            let mut found = declared_json(&declaration);
+            found["name"] = json!(name);
+            found
+        };
+        return json(&declared.map(law).collect());
+    }
+    let widest = SHIPPED_LAWS.iter().map(|law| law.name.len()).max().unwrap_or(0);
+    for (name, declaration) in declared {
+        say(&format!("{name:widest$}  {}; {}", declaration.title, known(&declaration)));
+    }
+}
+
+/// What a law has to know, in words.
+fn known(declaration: &Declaration) -> String {
+    let leaders = counted(declaration.leaders, "leader");
+    let knows = match declaration.knows {
+        Knowledge::Output => "knows distance and bearing",
+        Knowledge::Rates => "knows true rates, too",
+        Knowledge::Motion => "knows the leader's motion, too",
+    };
+    if declaration.leaders == 1 { knows.to_owned() } else { format!("{leaders}, {knows}") }
+}
+
+fn declared_json(declaration: &Declaration) -> Value {
+    let parameter = |own: &Parameter| {
+        json!({
+            "name": own.name, "symbol": own.symbol, "unit": own.unit.to_string(), "default": own.default,
+            "range": own.range, "logarithmic": own.scale == Scale::Logarithmic, "help": own.help,
+        })
+    };
+    let quantity = |own: &laws::Quantity| json!({ "name": own.name, "unit": own.unit.to_string() });
+    json!({
+        "title": declaration.title, "leaders": declaration.leaders,
+        "knows": match declaration.knows {
+            Knowledge::Output => "output",
+            Knowledge::Rates => "rates",
+            Knowledge::Motion => "motion",
+        },
+        "continuous": declaration.continuous,
+        "parameters": declaration.parameters.iter().map(parameter).collect::<Vec<_>>(),
+        "memory": declaration.memory.iter().map(quantity).collect::<Vec<_>>(),
+        "shown": declaration.shown.iter().map(quantity).collect::<Vec<_>>(),
+    })
+}
+
+fn show(name: &str) -> Outcome {
+    let Some(law) = shipped(name) else {
+        let names: Vec<&str> = SHIPPED_LAWS.iter().map(|law| law.name).collect();
+        let text = format!("no law called `{name}` comes with the program; there are {}", names.join(", "));
+        return Err(Failure::Usage(text));
+    };
+    verbatim(law.text);
+    Ok(())
+}
+
+fn check(paths: &[PathBuf], as_json: bool) -> Outcome {
+    let (mut problems, mut all) = (vec![], vec![]);
+    for path in paths {
+        match load_law(path) {
+            Ok(law) if as_json => {
+                let mut found = declared_json(law.declaration());
+                found["law"] = json!(path.display().to_string());
+                all.push(found);
+            }
+            Ok(law) => tell(path, law.declaration()),
+            Err(faults) => problems.push(faults.to_string()),
+        }
+    }
+    if as_json && problems.is_empty() {
+        json(&all.into());
+    }
+    if problems.is_empty() { Ok(()) } else { Err(Failure::Usage(problems.join("\nerror: "))) }
+}
+
+/// What a law declares.
+fn tell(path: &Path, declaration: &Declaration) {
+    let time = if declaration.continuous { "samples and continuous time" } else { "samples" };
+    say(&format!("{}: good: {}; {}; for {time}", path.display(), declaration.title, known(declaration)));
+    for own in &declaration.parameters {
+        let scale = if own.scale == Scale::Logarithmic { ", logarithmic" } else { "" };
+        let [low, high] = own.range;
+        let unit = own.unit.to_string();
+        let text = format!("  {} = {} {unit}", own.name, own.default);
+        say(&format!("{:<24} {low} to {high}{scale}  {}", text.trim_end(), own.help));
+    }
+    let names = |all: &[laws::Quantity]| {
+        let name = |own: &laws::Quantity| match own.unit.to_string() {
+            unit if unit.is_empty() => own.name.clone(),
+            unit => format!("{} [{unit}]", own.name),
+        };
+        all.iter().map(name).collect::<Vec<_>>().join(", ")
+    };
+    for (what, all) in [("memory", &declaration.memory), ("shows", &declaration.shown)] {
+        if !all.is_empty() {
+            say(&format!("  {what}: {}", names(all)));
+        }
+    }
+}
+
+fn new(file: &Path) -> Outcome {
+    let failed = |error: std::io::Error| {
+        let path = file.display();
+        match error.kind() {
+            ErrorKind::AlreadyExists => {
+                Failure::Usage(format!("{path} is there already: choose another name"))
+            }
+            ErrorKind::NotFound => Failure::Usage(format!("cannot write {path}: there is no such folder")),
+            _ => Failure::Machine(format!("cannot write {path}: {error}")),
+        }
+    };
+    let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(failed)?;
+    opened.write_all(TEMPLATE.as_bytes()).map_err(failed)?;
+    let path = file.display();
+    note(&format!("{path}: try it with echelon lab circle-three --set law.file={path}"));
+    say(&path.to_string());
+    Ok(())
+}
+
+/// Bounds of what a test takes, by option: all are finite.
+fn bounded(name: &str, value: f64, [low, high]: [f64; 2]) -> Outcome {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(Failure::Usage(format!("--{name} must be from {low} to {high}, not {value}")))
+}
+
+fn test(args: &TestArgs, as_json: bool) -> Outcome {
+    bounded("distance", args.distance, [0.01, 1000.0])?;
+    bounded("bearing", args.bearing, [-180.0, 180.0])?;
+    bounded("speed", args.speed, [0.001, 100.0])?;
+    bounded("turn-rate", args.turn_rate, [-10.0, 10.0])?;
+    bounded("period", args.period, [1e-4, 1.0])?;
+    let law = load_law(&args.law).map_err(|faults| Failure::Usage(faults.to_string()))?;
+    let parameters = parameters(&law, &args.set)?;
+    let leaders = leaders(&law, args)?;
+    let end = close(&*law.law(), &parameters, &leaders)
+        .map_err(|fault| Failure::Broken(format!("{}:{fault}", args.law.display())))?;
+    let stable = end.poles.as_ref().is_some_and(|poles| poles.iter().all(|pole| pole.re < 0.0));
+    if as_json {
+        json(&end_json(&end, stable));
+    } else {
+        tell_end(&law, args, &end, stable);
+    }
+    if stable { Ok(()) } else { Err(Failure::Expectation) }
+}
+
+/// The law's parameters with those that are set.
+fn parameters(law: &WrittenLaw, set: &[String]) -> Result<Vec<f64>, Failure> {
+    let declared = &law.declaration().parameters;
+    let mut values: Vec<f64> = declared.iter().map(|own| own.default).collect();
+    for set in set {
+        let usage = |why: String| Failure::Usage(format!("--set {set}: {why}"));
+        let (name, value) =
+            set.split_once('=').ok_or_else(|| usage("write a parameter's name=value".to_owned()))?;
+        let Some(index) = declared.iter().position(|own| own.name == name.trim()) else {
+            let names: Vec<&str> = declared.iter().map(|own| own.name.as_str()).collect();
+            return Err(usage(format!("the law has no parameter `{name}`; it has {}", names.join(", "))));
+        };
+        let [low, high] = declared[index].range;
+        let value = value.trim().parse::<f64>().ok().filter(|value| (low..=high).contains(value));
+        values[index] = value.ok_or_else(|| usage(format!("must be a number from {low} to {high}")))?;
+    }
+    Ok(values)
+}
+
+/// Leaders side by side, a distance apart, and the follower near its place.
+fn leaders(law: &WrittenLaw, args: &TestArgs) -> Result<SteadyLeaders, Failure> {
+    let TestArgs { distance, speed, turn_rate, period, .. } = *args;
+    let (count, bearing) = (law.declaration().leaders, args.bearing.to_radians());
+    let (places, wanted, start) = match count {
+        1 => {
+            let (sin, cos) = math::sin_cos(bearing);
+            let place = [distance * cos, distance * sin];
+            (vec![[0.0, 0.0]], vec![[Some(distance), Some(bearing)]], place)
+        }
+        2 => {
+            let side = 0.5 * distance;
+            let behind = -(distance * distance - side * side).sqrt();
+            let places = vec![[0.0, side], [0.0, -side]];
+            (places, vec![[Some(distance), None]; 2], [behind, 0.0])
+        }
+        _ => {
+            let text = format!("{} looks at {count} leaders: a test takes one or two", law.name());
+            return Err(Failure::Usage(text));
+        }
+    };
+    // A little off, so that the follower has something to do.
+    let start = [start[0] * 1.02, start[1] + 0.01 * distance];
+    Ok(SteadyLeaders { places, wanted, speed, turn_rate, period, start })
+}
+
+fn tell_end(law: &WrittenLaw, args: &TestArgs, end: &LoopEnd, stable: bool) {
+    let TestArgs { distance, bearing, speed, turn_rate, period, .. } = args;
+    say(&format!("{}: {}", args.law.display(), law.declaration().title));
+    let place = match law.declaration().leaders {
+        1 => format!("{distance} m at {bearing}° from a leader"),
+        count => {
+            format!("{distance} m from each of {count} leaders that are {distance} m apart, side by side,")
+        }
+    };
+    say(&format!("{place} at {speed} m/s and {turn_rate} rad/s, every {} ms, without limits", 1e3 * period));
+    if law.declaration().knows == Knowledge::Output {
+        say("rates are taken as true; in a run the built-in observer estimates them");
+    }
+    let Some(poles) = &end.poles else {
+        return say("the follower does not settle within a minute");
+    };
+    for (index, [distance, bearing]) in end.errors.iter().enumerate() {
+        let of = if end.errors.len() > 1 { format!(" to leader {}", index + 1) } else { String::new() };
+        say(&format!("settles at an error of {:.3} mm, {:.4}°{of}", 1e3 * distance, bearing.to_degrees()));
+    }
+    say("\npole, 1/s                 damping  time constant");
+    for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
+        say(&line(pole));
+    }
+    let memory = &law.declaration().memory;
+    let apart: Vec<&str> =
+        end.apart.iter().filter_map(|index| memory.get(*index)).map(|own| &*own.name).collect();
+    if !apart.is_empty() {
+        say(&format!("nothing depends on {}: without a pole", apart.join(", ")));
+    }
+    say(if stable { "stable" } else { "not stable" });
+}
+
+fn line(pole: &Pole) -> String {
+    let size = math::hypot(pole.re, pole.im);
+    let value =
+        if pole.im == 0.0 { format!("{:.3}", pole.re) } else { format!("{:.3} ± {:.3}i", pole.re, pole.im) };
+    let damping = if size > 0.0 { -pole.re / size } else { 0.0 };
+    let time = if pole.re < 0.0 { format!("{:.3} s", -1.0 / pole.re) } else { "grows".to_owned() };
+    format!("{value:<24}  {damping:>7.3}  {time:>13}")
+}
+
+fn end_json(end: &LoopEnd, stable: bool) -> Value {
+    let poles = end.poles.as_ref();
+    let poles = poles.map(|poles| poles.iter().map(|pole| [pole.re, pole.im]).collect::<Vec<_>>());
+    json!({
+        "settles": poles.is_some(), "stable": stable, "errors": end.errors, "speed": end.speed,
+        "acceleration": end.command.acceleration, "turn_rate": end.command.turn_rate, "poles": poles,
+    })
+}
