@@ -210,11 +210,15 @@ fn one_with_several_leaders_may_drive_on_its_own_and_fail() {
     assert_eq!(last.leaders[2..], [None; 2]);
 }
 
+/// Nobody knows beforehand that the formation of `zoe` will have such a robot in it.
 #[test]
 fn places_are_not_taken_anew_where_one_has_several_leaders() {
-    let (told, last) = told("[[events]]\nat = 3.0\nassign = \"ann\"");
-    assert_eq!(told, [(EventKind::Assign, 0, Refusal::Several)]);
-    assert_eq!(last.leaders[2..], [Some(1), Some(2)]);
+    let zoe =
+        "[[robots]]\nname = \"zoe\"\npose = [2.0, 0.0, 0.0]\npath = { kind = \"constant\", speed = 0.6 }\n";
+    let follow = "[[events]]\nat = 2.0\nrobot = \"ann\"\nleader = \"zoe\"\n";
+    let (told, last) = told(&format!("{zoe}{follow}[[events]]\nat = 6.0\nassign = \"zoe\""));
+    assert_eq!(told, [(EventKind::Follow, 0, Refusal::None), (EventKind::Assign, 4, Refusal::Several)]);
+    assert_eq!(last.leaders, [Some(0), Some(0), Some(1), Some(2), Some(4)]);
 }
 
 #[test]

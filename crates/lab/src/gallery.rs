@@ -39,6 +39,7 @@ const THUMBNAILS: &[(&str, &[u8])] = &thumbnails![
     "lost-robot",
     "merge-two-columns",
     "join",
+    "two-leaders",
     "cars-line-three",
     "cars-circle-three",
     "cars-seven-v",

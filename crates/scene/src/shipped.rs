@@ -52,6 +52,7 @@ shipped![
     "lost-robot",
     "merge-two-columns",
     "join",
+    "two-leaders",
     "cars-line-three",
     "cars-circle-three",
     "cars-seven-v",
