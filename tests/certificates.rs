@@ -84,6 +84,7 @@ fn word(premise: &Premise) -> &'static str {
         Premise::FullState => "full-state",
         Premise::CustomLaw => "custom-law",
         Premise::NoObserver => "no-observer",
+        Premise::SeveralLeaders => "several-leaders",
         Premise::Smoothed => "tanh",
         Premise::Chatter(_) => "chatter",
         Premise::Saturated(_) => "saturated",

@@ -48,6 +48,9 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
                 for gate in studies::gates(&simulation, scene.time.duration) {
                     note(&format!("{name}: note: {gate}"));
                 }
+                for line in studies::in_line(&simulation) {
+                    note(&format!("{name}: note: {line}"));
+                }
                 let (robots, edges) = (fleet.robots.len(), fleet.edges.len());
                 let length = scene.time.duration;
                 let (robots, edges) = (counted(robots, "robot"), counted(edges, "edge"));

@@ -107,6 +107,8 @@ pub enum Action {
         leader: usize,
         /// Index of the follower.
         follower: usize,
+        /// Whether it keeps the leaders that it has.
+        adds: bool,
     },
     /// Let something happen to a robot now.
     Happen {

@@ -383,6 +383,28 @@ fn the_arrow_to_a_set_point_shows_through_its_robot() {
     assert!(early > 40 && late < 10, "{early} {late}");
 }
 
+/// Of a set point whose bearing is left free an arc around the leader is drawn, which goes on beside where a ring ends.
+#[test]
+fn a_distance_alone_is_drawn_as_an_arc_around_the_leader() {
+    let mut play = Play::new(2, Path::Straight);
+    let time = 18.0;
+    let (leader, [distance, bearing]) =
+        (play.at(time).snapshot.robots[0].motion.pose, play.at(time).edges[0].set_point);
+    // Straight above a place on the circle, half a metre from the set point along it.
+    let [x, y] = leader.polar(distance, bearing + 0.6 / distance);
+    let view = Viewpoint::Fixed { eye: [x, y, 5.0], target: [x, y, 0.0], field_of_view: 0.6 };
+    let middle = |play: &Play, set_points: bool| {
+        let picture = draw(play, view.clone(), time, &Style { set_points, ..Style::bare() });
+        let (x, y) = (SIZE.0 / 2, SIZE.1 / 2);
+        let near = (x - 3..=x + 3).flat_map(|x| (y - 3..=y + 3).map(move |y| (x, y)));
+        near.map(|(x, y)| picture.rgb(x, y).unwrap()).collect::<Vec<_>>()
+    };
+    assert_eq!(middle(&play, false), middle(&play, true), "a ring does not reach there");
+    play.fleet.free = vec![[false, true]];
+    let differ = middle(&play, false).iter().zip(middle(&play, true)).filter(|(a, b)| **a != *b).count();
+    assert!(differ >= 7, "{differ}");
+}
+
 /// The middle of what the shadows darken, pixels.
 fn shadow_middle(play: &Play) -> [f64; 2] {
     let lit = draw(play, plan(), 12.0, &Style::without(Style::ELEMENTS).unwrap());

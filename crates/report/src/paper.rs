@@ -107,7 +107,7 @@ fn depth(run: &Trace) -> usize {
         for edge in &run.fleet.edges {
             let above = depths.get(edge.leader).copied().unwrap_or(0);
             if let Some(depth) = depths.get_mut(edge.follower) {
-                *depth = above + 1;
+                *depth = (*depth).max(above + 1);
             }
         }
     }

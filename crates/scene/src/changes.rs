@@ -2,7 +2,7 @@
 
 use crate::{
     Change, Override, Robot, Role, Scene,
-    document::{Document, GroupKeys, MOST_ROBOTS, MemberKeys, RobotKeys},
+    document::{Document, GroupKeys, LeaderKeys, MOST_ROBOTS, MemberKeys, RobotKeys},
     overrides::Origin,
     resolve::resolve_robots,
     sets::{ParameterDifference, refusal},
@@ -153,6 +153,8 @@ fn is_fixed(path: &[&str]) -> bool {
     match path {
         ["robots" | "groups"] | ["robots" | "groups", _] => true,
         ["groups", _, "members", _, key, ..] => fixed(MemberKeys::marks(key)),
+        ["robots", _, "leaders"] | ["robots", _, "leaders", _] => true,
+        ["robots", _, "leaders", _, key, ..] => fixed(LeaderKeys::marks(key)),
         ["robots", _, key, ..] => fixed(RobotKeys::marks(key)),
         ["groups", _, key, ..] => fixed(GroupKeys::marks(key)),
         [key, ..] => fixed(Document::marks(key)),

@@ -18,6 +18,7 @@ use crate::{
     },
     vehicle::VehicleForm,
 };
+use laws::LEADERS_MAX;
 use std::f64::consts::{FRAC_PI_2, PI};
 use vocabulary::{ScalarTrajectory, words};
 
@@ -92,7 +93,20 @@ keys! {
 }
 
 keys! {
-    /// A robot: one that leads has a `path`, one that follows has a `leader`, a `distance` and a `bearing`.
+    /// One of several leaders of a robot, and where the robot keeps to it. One of `distance` and `bearing` may be left out;
+    /// it is free then.
+    struct LeaderKeys {
+        /// Name of the robot that is followed.
+        name: String = NameForm::WHOLE, required;
+        /// Wanted distance from it, m: a number, a sinusoid, or smooth passages.
+        distance: ScalarTrajectory = DistanceForm, optional, Live;
+        /// Wanted bearing, seen from its heading, left positive: an angle, a sinusoid, or smooth passages.
+        bearing: ScalarTrajectory = BearingForm, optional, Live;
+    }
+}
+
+keys! {
+    /// A robot: one that leads has a `path`, one that follows has a `leader`, a `distance` and a `bearing`, or `leaders`.
     struct RobotKeys {
         /// Unique name.
         name: String = NameForm::WHOLE, required;
@@ -102,6 +116,8 @@ keys! {
         path: Path = PATH, optional;
         /// Name of the robot that is followed.
         leader: String = NameForm::WHOLE, optional;
+        /// Robots that are followed by a law that looks at several, in its order.
+        leaders: Vec<LeaderKeys> = list(table::<LeaderKeys>(), 2, LEADERS_MAX), optional, Live;
         /// Wanted distance from the leader, m: a number, a sinusoid, or smooth passages.
         distance: ScalarTrajectory = DistanceForm, optional, Live;
         /// Wanted bearing, seen from the leader's heading, left positive: an angle, a sinusoid, or smooth passages.

@@ -3,6 +3,7 @@
 use crate::{
     Event, Failure, HandOver, Happening, Holds, Joining, Path, Place, Recovery, Role, Trigger, When,
     graph::check_known,
+    leaders::{check_count, keeps_its_leaders},
     names::NameForm,
     narrowing::fault,
     path_form::PATH,
@@ -10,7 +11,7 @@ use crate::{
     text::{Couple, Found, Node, Reporter, Span, keys, keys::one_of, number, table, words::word},
     types::{BearingForm, DistanceForm, LawPart, NarrowingPart, ObserverPart, SensingForm, SensingPart},
 };
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use vocabulary::{ScalarTrajectory, TimeMode};
 
 keys! {
@@ -179,6 +180,13 @@ impl EventDraft<'_> {
         self.check_keys(kind, reporter);
         if let Some(leader) = assign {
             self.known(leader, reporter);
+            if let Some(robot) = self.several_behind(&leader.value) {
+                let message = format!(
+                    "`{}` follows `{}` and has several leaders: nobody can take its place, nor it that of others",
+                    robot.name, leader.value
+                );
+                reporter.report(leader.span, message);
+            }
             return Some(Happening::Assign { assign: leader.value.clone() });
         }
         if kind == "assign" {
@@ -246,6 +254,9 @@ impl EventDraft<'_> {
             (None, None) => None,
         };
         let robot = self.robot(&name)?;
+        if let Some(message) = keeps_its_leaders(robot) {
+            reporter.report(leader.span, message);
+        }
         let mut joins = None;
         let mut distance_min = robot.role.follow().map(|follow| follow.law.distance_min);
         if robot.role.follow().is_some() {
@@ -272,6 +283,7 @@ impl EventDraft<'_> {
             if let Some(message) = fault(robot, &narrowing, &law) {
                 reporter.report(self.node.span, message);
             }
+            check_count(&name, 1, &law, self.node.span, reporter);
             joins = Some(Box::new(Joining { law, observer, sensing, narrowing }));
         }
         if let (Some(least), Some(found)) = (distance_min, distance) {
@@ -288,10 +300,55 @@ impl EventDraft<'_> {
         self.drafts.iter().filter_map(|draft| draft.robot.as_ref()).find(|robot| robot.name == name)
     }
 
+    /// A robot with several leaders that follows `head` at the start, directly or through others.
+    fn several_behind(&self, head: &str) -> Option<&crate::Robot> {
+        let robots: Vec<_> = self.drafts.iter().filter_map(|draft| draft.robot.as_ref()).collect();
+        let several =
+            |robot: &&crate::Robot| robot.role.follow().is_some_and(|follow| follow.leaders.are_several());
+        if !robots.iter().any(several) {
+            return None;
+        }
+        let mut behind = HashSet::from([head]);
+        let follows = |robot: &crate::Robot, behind: &HashSet<&str>| {
+            robot
+                .role
+                .follow()
+                .is_some_and(|follow| follow.leaders.iter().any(|leader| behind.contains(&*leader.name)))
+        };
+        let mut before = 0;
+        while std::mem::replace(&mut before, behind.len()) < behind.len() {
+            let more: Vec<&str> =
+                robots.iter().filter(|robot| follows(robot, &behind)).map(|robot| &*robot.name).collect();
+            behind.extend(more);
+        }
+        robots.into_iter().find(|robot| several(robot) && behind.contains(&*robot.name))
+    }
+
     /// Whether a robot follows at the start, or may follow later.
     fn follows(&self, name: &str) -> bool {
         self.robot(name).is_none_or(|robot| robot.role.follow().is_some())
     }
+}
+
+/// From leader to leader, from `from` to `to`, both included; `None` where no way leads there.
+fn chain<'a>(leaders: &'a HashMap<String, Vec<String>>, from: &'a str, to: &str) -> Option<Vec<&'a str>> {
+    let mut reached: HashMap<&str, Option<&str>> = HashMap::from([(from, None)]);
+    let mut open = vec![from];
+    while let Some(name) = open.pop() {
+        if name == to {
+            let mut chain: Vec<_> =
+                std::iter::successors(Some(name), |name| reached.get(name).copied().flatten()).collect();
+            chain.reverse();
+            return Some(chain);
+        }
+        for next in leaders.get(name).into_iter().flatten() {
+            reached.entry(next).or_insert_with(|| {
+                open.push(next);
+                Some(name)
+            });
+        }
+    }
+    None
 }
 
 /// Reports events that cannot both be, as far as their times tell: what happens to a robot after it has failed, two
@@ -305,10 +362,11 @@ fn check_order(events: &[(Event, Span)], drafts: &[RobotDraft], reporter: &mut R
     timed.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut failed: HashMap<String, f64> = HashMap::new();
     let mut last: HashMap<String, f64> = HashMap::new();
-    let mut leaders: HashMap<String, String> = HashMap::new();
+    let mut leaders: HashMap<String, Vec<String>> = HashMap::new();
     for robot in drafts.iter().filter_map(|draft| draft.robot.as_ref()) {
         if let Role::Follow(follow) = &robot.role {
-            leaders.insert(robot.name.clone(), follow.leader.clone());
+            let names = follow.leaders.iter().map(|leader| leader.name.clone());
+            leaders.insert(robot.name.clone(), names.collect());
         }
     }
     // Whoever recovers from a failure follows whom it can.
@@ -334,15 +392,8 @@ fn check_order(events: &[(Event, Span)], drafts: &[RobotDraft], reporter: &mut R
             Happening::Lead { robot, .. } => drop(leaders.remove(robot)),
             Happening::Assign { .. } => sure = false,
             Happening::Follow { robot, leader, .. } => {
-                let mut chain = vec![leader.as_str()];
-                while let Some(next) = leaders.get(chain[chain.len() - 1]) {
-                    if chain.contains(&next.as_str()) {
-                        break;
-                    }
-                    chain.push(next);
-                }
-                if sure && chain.contains(&robot.as_str()) {
-                    chain.truncate(chain.iter().position(|name| name == robot).unwrap_or(0) + 1);
+                let chain = chain(&leaders, leader, robot);
+                if let Some(chain) = chain.filter(|_| sure) {
                     let ring: Vec<_> =
                         [robot.as_str()].iter().chain(&chain).map(|name| format!("`{name}`")).collect();
                     let message =
@@ -350,7 +401,7 @@ fn check_order(events: &[(Event, Span)], drafts: &[RobotDraft], reporter: &mut R
                     reporter.report(*span, message);
                     return;
                 }
-                leaders.insert(robot.clone(), leader.clone());
+                leaders.insert(robot.clone(), vec![leader.clone()]);
             }
         }
     }

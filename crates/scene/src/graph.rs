@@ -5,21 +5,21 @@
 use crate::text::{Found, Reporter, Span, words::instead_of};
 use std::collections::HashMap;
 
-/// A robot's name and its leader's, where they could be read.
+/// A robot's name and its leaders', where they could be read.
 #[derive(Debug, Clone)]
 pub(crate) struct Named {
     pub(crate) name: Option<Found<String>>,
-    pub(crate) leader: Option<Found<String>>,
+    pub(crate) leaders: Vec<Found<String>>,
 }
 
 /// Reports duplicate names, unknown leaders, robots that follow themselves, and cycles. Without these every follower
 /// comes to a robot that leads if it goes from leader to leader; there may be several that lead.
 pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, reporter: &mut Reporter) {
-    let mut leader_of: HashMap<&str, Option<&Found<String>>> = HashMap::with_capacity(robots.size_hint().0);
+    let mut leaders_of: HashMap<&str, &[Found<String>]> = HashMap::with_capacity(robots.size_hint().0);
     let mut spans: HashMap<&str, Span> = HashMap::with_capacity(robots.size_hint().0);
     for robot in robots.clone() {
         let Some(name) = &robot.name else { continue };
-        leader_of.insert(&name.value, robot.leader.as_ref());
+        leaders_of.insert(&name.value, &robot.leaders);
         if let Some(other) = spans.insert(&name.value, name.span) {
             // The one that was written later, from the command line above all.
             let span = name.span.max(other);
@@ -27,14 +27,19 @@ pub(crate) fn check_graph<'a>(robots: impl Iterator<Item = &'a Named> + Clone, r
         }
     }
     for robot in robots.clone() {
-        let Some(leader) = &robot.leader else { continue };
-        if robot.name.as_ref().is_some_and(|name| name.value == leader.value) {
-            reporter.report(leader.span, format!("`{}` cannot follow itself", leader.value));
-        } else if !leader_of.contains_key(leader.value.as_str()) && !reporter.is_full() {
-            check_known(&leader.value, leader.span, robots.clone(), reporter);
+        for (index, leader) in robot.leaders.iter().enumerate() {
+            if robot.name.as_ref().is_some_and(|name| name.value == leader.value) {
+                reporter.report(leader.span, format!("`{}` cannot follow itself", leader.value));
+            } else if robot.leaders.iter().take(index).any(|other| other.value == leader.value) {
+                let message =
+                    format!("`{}` is named twice: the leaders of a robot must differ", leader.value);
+                reporter.report(leader.span, message);
+            } else if !leaders_of.contains_key(leader.value.as_str()) && !reporter.is_full() {
+                check_known(&leader.value, leader.span, robots.clone(), reporter);
+            }
         }
     }
-    check_cycles(robots, &leader_of, reporter);
+    check_cycles(robots, &leaders_of, reporter);
 }
 
 /// Reports that no robot is called `name`, if so, with the nearest and some that there are.
@@ -56,40 +61,49 @@ pub(crate) fn check_known<'a>(
 
 fn check_cycles<'a>(
     robots: impl Iterator<Item = &'a Named>,
-    leader_of: &HashMap<&'a str, Option<&'a Found<String>>>,
+    leaders_of: &HashMap<&'a str, &'a [Found<String>]>,
     reporter: &mut Reporter,
 ) {
-    // Each name is walked from once; a walk that meets its own trail has found a cycle.
-    let mut walk_of: HashMap<&str, usize> = HashMap::with_capacity(leader_of.len());
-    for (walk, robot) in robots.enumerate() {
-        let mut trail = vec![];
-        let mut at = robot.name.as_ref().map(|name| name.value.as_str());
-        while let Some(name) = at {
-            match walk_of.insert(name, walk) {
-                None => trail.push(name),
-                Some(earlier) => {
-                    if earlier == walk {
-                        note_cycle(&trail, name, leader_of, reporter);
-                    }
-                    break;
+    // From leader to leader, one after the other; a walk that meets its own trail has found a cycle.
+    let mut walked: HashMap<&str, bool> = HashMap::with_capacity(leaders_of.len());
+    for start in robots.filter_map(|robot| robot.name.as_ref()) {
+        if walked.contains_key(start.value.as_str()) {
+            continue;
+        }
+        walked.insert(&start.value, false);
+        let mut trail = vec![(start.value.as_str(), 0)];
+        while let Some((at, next)) = trail.last_mut() {
+            let Some(leader) = leaders_of.get(at).and_then(|leaders| leaders.get(*next)) else {
+                walked.insert(at, true);
+                trail.pop();
+                continue;
+            };
+            *next += 1;
+            match walked.get(leader.value.as_str()) {
+                None => {
+                    walked.insert(&leader.value, false);
+                    trail.push((&leader.value, 0));
                 }
+                Some(false) => note_cycle(&trail, &leader.value, leaders_of, reporter),
+                Some(true) => {}
             }
-            at = leader_of.get(name).copied().flatten().map(|leader| leader.value.as_str());
         }
     }
 }
 
+/// A cycle that ends in `name`, which is on the trail; each of the trail with the number of the leader after the one that
+/// the trail goes to.
 fn note_cycle(
-    trail: &[&str],
+    trail: &[(&str, usize)],
     name: &str,
-    leader_of: &HashMap<&str, Option<&Found<String>>>,
+    leaders_of: &HashMap<&str, &[Found<String>]>,
     reporter: &mut Reporter,
 ) {
-    let cycle: Vec<_> = trail.iter().copied().skip_while(|robot| *robot != name).collect();
-    let Some(Some(leader)) = leader_of.get(name) else { return };
+    let cycle: Vec<_> = trail.iter().copied().skip_while(|(robot, _)| *robot != name).collect();
     // A robot that follows itself has its own message.
-    if cycle.len() > 1 {
-        let chain: Vec<_> = cycle.iter().chain([&name]).map(|robot| format!("`{robot}`")).collect();
-        reporter.report(leader.span, format!("the followers form a cycle: {}", chain.join(" follows ")));
-    }
+    let [(_, after), _, ..] = cycle[..] else { return };
+    let Some(leader) = leaders_of.get(name).and_then(|leaders| leaders.get(after - 1)) else { return };
+    let robots = cycle.iter().map(|(robot, _)| *robot).chain([name]);
+    let chain: Vec<_> = robots.map(|robot| format!("`{robot}`")).collect();
+    reporter.report(leader.span, format!("the followers form a cycle: {}", chain.join(" follows ")));
 }

@@ -1,9 +1,10 @@
 //! Groups become robots.
 
 use crate::{
-    Follow, Law, Narrowing, Observer, Proximity, Robot, Role, Safety, Sensing, Vehicle,
+    Follow, Law, Leaders, Narrowing, Observer, Proximity, Robot, Role, Safety, Sensing, Vehicle,
     document::{Follows, GroupKeys, MOST_ROBOTS, MemberKeys},
     graph::{Named, check_known},
+    leaders::check_count,
     random::RandomStream,
     robots::{Defaults, RobotDraft, check_distance, check_path, start_pose, start_speed},
     text::{Form, Found, Keys, Node, Part, Reporter, Value, node::Entry, table, words::instead_of},
@@ -88,7 +89,9 @@ pub(crate) fn expand(
         }
         let usual = || if spot.follows == 0 { leader.clone() } else { group.name(spot.follows) };
         let followed = told.as_ref().map_or_else(usual, |told| told.value.clone());
-        let follow = Follow { leader: followed, speed, distance, bearing, law, observer, sensing, narrowing };
+        check_count(&name, 1, &law, group.node.span, reporter);
+        let leaders = Leaders::one(followed, distance, bearing);
+        let follow = Follow { leaders, speed, law, observer, sensing, narrowing };
         let role = Role::Follow(Box::new(follow));
         let robot = Robot { name, pose, number: 0, vehicle, safety, proximity, role };
         group.push(place, robot, told, drafts);
@@ -313,7 +316,7 @@ impl Group<'_> {
         let at = said.map_or(self.node.span, |name| name.span);
         let name = Some(Found { span: at, value: robot.name.clone() });
         // Leaders that the shape gives exist, and the one outside has been looked up; one that is written has not.
-        let named = Named { name, leader };
+        let named = Named { name, leaders: leader.into_iter().collect() };
         drafts.push(RobotDraft { named, start: Some(at), number: None, robot: Some(robot) });
     }
 

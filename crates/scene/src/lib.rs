@@ -18,6 +18,7 @@ mod ground;
 mod groups;
 mod heights_file;
 mod law_file;
+mod leaders;
 mod link;
 mod load;
 mod names;
@@ -53,7 +54,8 @@ pub use shipped::{SHIPPED, Shipped, nearest_shipped, scene_name, shipped};
 pub use text::node::composed;
 pub use types::{
     Change, Compensation, Environment, Event, Expect, Failure, Film, Follow, Ground, HandOver, Happening,
-    Holds, Joining, Law, LawSource, Narrowing, Noise, Observer, OnContact, Patch, Path, Physics, Place, Plot,
-    PropMotion, PropSpec, Proximity, Recovery, Relief, Robot, Role, Safety, Scene, Sensing, SensingKind,
-    Shot, SpeedProfile, SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views, Vision, When, WrittenLaw,
+    Holds, Joining, Law, LawSource, Leader, Leaders, Narrowing, Noise, Observer, OnContact, Patch, Path,
+    Physics, Place, Plot, PropMotion, PropSpec, Proximity, Recovery, Relief, Robot, Role, Safety, Scene,
+    Sensing, SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views,
+    Vision, When, WrittenLaw,
 };

@@ -203,7 +203,7 @@ fn drafts(
         let group = Group { keys, node, index: index as u64 };
         if expand(&group, seed, defaults, &mut drafts, reporter).is_none() {
             // Its errors are reported already; a robot that is not known may be one of its.
-            let named = Named { name: None, leader: None };
+            let named = Named { name: None, leaders: vec![] };
             drafts.push(RobotDraft { named, start: None, number: None, robot: None });
         }
     }

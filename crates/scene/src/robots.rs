@@ -5,6 +5,7 @@ use crate::{
     document::RobotKeys,
     graph::Named,
     law_file::faults,
+    leaders::{check_several, leaders, named},
     text::{Found, Keys, Node, Part, Reporter, Span},
     types::{
         LawPart, NarrowingPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart, WrittenLaw,
@@ -138,7 +139,7 @@ pub(crate) fn draft(
     defaults: &Defaults,
     reporter: &mut Reporter,
 ) -> RobotDraft {
-    let named = Named { name: keys.name.clone(), leader: keys.leader.clone() };
+    let named = Named { name: keys.name.clone(), leaders: named(keys) };
     let start = keys.pose.as_ref().map(|pose| pose.span).or(keys.name.as_ref().map(|name| name.span));
     RobotDraft { named, start, number: keys.number.clone(), robot: robot(keys, node, defaults, reporter) }
 }
@@ -176,7 +177,7 @@ fn role(
     reporter: &mut Reporter,
 ) -> Option<Role> {
     let name = keys.name.as_ref()?;
-    match (node.get("path"), node.get("leader")) {
+    match (node.get("path"), node.get("leader").or(node.get("leaders"))) {
         (Some(_), None) => lead(keys, node, vehicle, reporter),
         (None, Some(_)) => {
             follow(keys, node, vehicle, defaults, reporter).map(|follow| Role::Follow(Box::new(follow)))
@@ -217,32 +218,25 @@ fn follow(
     defaults: &Defaults,
     reporter: &mut Reporter,
 ) -> Option<Follow> {
-    for key in ["distance", "bearing"] {
-        if node.get(key).is_none() {
-            reporter.report(
-                keys.leader.as_ref()?.span,
-                format!("`{key}` is missing: a robot that follows needs it"),
-            );
-        }
-    }
     let law = keys.law.clone().map_or_else(LawPart::default, |found| found.value);
     let law = defaults.law(&law, vehicle.kind, node.span, reporter);
     let observer = keys.observer.clone().map_or_else(ObserverPart::default, |found| found.value);
     let sensing = keys.sensing.clone().map_or_else(SensingPart::default, |found| found.value);
     let narrowing = keys.narrowing.clone().map_or_else(NarrowingPart::default, |found| found.value);
     let speed = start_speed(keys.speed.as_ref(), vehicle, law.standing, reporter);
-    let (distance, bearing) = (keys.distance.as_ref()?, keys.bearing.as_ref()?);
-    check_distance(distance.value.range()[0], law.distance_min, distance.span, reporter);
-    Some(Follow {
-        leader: keys.leader.as_ref()?.value.clone(),
+    let follow = Follow {
+        leaders: leaders(keys, node, &law, reporter)?,
         speed,
-        distance: distance.value.clone(),
-        bearing: bearing.value.clone(),
         law,
         observer: defaults.observer(&observer, vehicle),
         sensing: defaults.sensing(&sensing),
         narrowing: defaults.narrowing(&narrowing),
-    })
+    };
+    if let (Some(name), Some(list)) = (&keys.name, &keys.leaders) {
+        let safety = keys.safety.clone().map_or_else(SafetyPart::default, |found| found.value);
+        check_several(&name.value, &follow, &defaults.safety(&safety), list.span, reporter);
+    }
+    Some(follow)
 }
 
 /// A follower's speed at the start, m/s; one that `stands` with its leader may start at rest.

@@ -8,6 +8,7 @@ use crate::vehicle::applies;
 use crate::{Follow, Law, Robot, Role, Scene};
 use serde::Serialize;
 use std::collections::BTreeSet;
+use vocabulary::ScalarTrajectory;
 
 /// What differs between two scenes.
 #[derive(Debug, Default)]
@@ -105,17 +106,31 @@ impl ParameterDifference {
     }
 
     fn note_follow(&mut self, a: &Follow, b: &Follow, at: &str) {
-        self.refuse_unless(a.leader == b.leader, at, "leader");
-        if a.distance != b.distance {
-            self.sets.push(format!("{at}distance={}", written(&b.distance)));
-        }
-        if a.bearing != b.bearing {
-            self.sets.push(format!("{at}bearing={}", written(&b.bearing)));
+        let names =
+            |follow: &Follow| follow.leaders.iter().map(|leader| leader.name.clone()).collect::<Vec<_>>();
+        if names(a) == names(b) {
+            for (before, after) in a.leaders.iter().zip(b.leaders.iter()) {
+                let several = format!("{at}leaders.{}.", after.name);
+                let at = if b.leaders.are_several() { &several } else { at };
+                self.note_channel([&before.distance, &after.distance], at, "distance");
+                self.note_channel([&before.bearing, &after.bearing], at, "bearing");
+            }
+        } else {
+            self.obstacles.push(format!("{at}leader"));
         }
         self.note_law(&a.law, &b.law, &format!("{at}law."));
         self.note_table([&a.observer, &b.observer], &format!("{at}observer."), is_live::<ObserverPart>);
         self.note_table([&a.narrowing, &b.narrowing], &format!("{at}narrowing."), is_live::<NarrowingPart>);
         self.note_table([&a.sensing, &b.sensing], &format!("{at}sensing."), is_live::<SensingPart>);
+    }
+
+    /// One part of a set point; whether it is left free stays.
+    fn note_channel(&mut self, [a, b]: [&Option<ScalarTrajectory>; 2], at: &str, key: &str) {
+        match [a, b] {
+            _ if a == b => {}
+            [Some(_), Some(value)] => self.sets.push(format!("{at}{key}={}", written(value))),
+            _ => self.obstacles.push(format!("{at}{key}")),
+        }
     }
 
     /// Of the keys that choose a law the one that chooses the second.

@@ -94,7 +94,7 @@ pub(crate) fn check_sight(said: &Said<'_>, drafts: &[RobotDraft], reporter: &mut
         }
         check_law(said, follow, robot, name.span, reporter);
         check_hold(follow, robot, name.span, reporter);
-        let leader = robots.get(follow.leader.as_str()).copied();
+        let leader = robots.get(follow.leaders.first.name.as_str()).copied();
         if let Some(leader) = leader.filter(|_| kind.needs_tags()) {
             if !inside {
                 inside = check_shell(said, robot, name.span, reporter);
@@ -197,8 +197,8 @@ fn check_visible(
         reporter.report(span, message);
         return;
     }
-    let (ScalarTrajectory::Constant(distance), ScalarTrajectory::Constant(bearing)) =
-        (&follow.distance, &follow.bearing)
+    let (Some(ScalarTrajectory::Constant(distance)), Some(ScalarTrajectory::Constant(bearing))) =
+        (&follow.leaders.first.distance, &follow.leaders.first.bearing)
     else {
         return;
     };

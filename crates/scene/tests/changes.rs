@@ -41,6 +41,16 @@ fn follow(robot: &Robot) -> &Follow {
     follow
 }
 
+/// The wanted distance to the one leader.
+fn distance(follow: &Follow) -> &ScalarTrajectory {
+    follow.leaders.first.distance.as_ref().expect("a wanted distance")
+}
+
+/// The wanted bearing from the one leader.
+fn bearing(follow: &Follow) -> &ScalarTrajectory {
+    follow.leaders.first.bearing.as_ref().expect("a wanted bearing")
+}
+
 fn change(at: &str, set: &str) -> String {
     format!("[[changes]]\nat = {at}\nset = [{set}]\n")
 }
@@ -62,9 +72,9 @@ fn changes_are_cumulative_and_in_the_order_of_time() {
     assert_eq!(first.set, ["robots.follower-1.distance=1.5", "robots.follower-1.law.kind=full-state"]);
     assert_eq!(second.set, ["robots.follower-1.law.k=[3.0, 3.0]"]);
     let (first, second) = (follow(&first.then.robots[1]), follow(&second.then.robots[1]));
-    assert_eq!((&first.distance, first.law.kind), (&ScalarTrajectory::Constant(1.5), LawKind::FullState));
+    assert_eq!((distance(first), first.law.kind), (&ScalarTrajectory::Constant(1.5), LawKind::FullState));
     assert_eq!(
-        (&second.distance, second.law.k, second.speed),
+        (distance(second), second.law.k, second.speed),
         (&ScalarTrajectory::Constant(1.5), [3.0; 2], 0.5)
     );
 }
@@ -76,7 +86,7 @@ fn every_kind_of_change_is_written_and_read_again() {
                'vehicle.speed_min=0.6', 'vehicle.acceleration_max=inf', 'vehicle.turn_rate_max=3'";
     let scene = load(&format!("{START}{}", change("4", set)));
     let then = &scene.changes[0].then;
-    assert_eq!(follow(&then.robots[1]).bearing, ScalarTrajectory::Constant(100f64.to_radians()));
+    assert_eq!(*bearing(follow(&then.robots[1])), ScalarTrajectory::Constant(100f64.to_radians()));
     // The start is past: its speed may lie outside the limits of now.
     assert_eq!((follow(&then.robots[1]).speed, then.robots[1].vehicle.speed_min), (0.5, 0.6));
     assert!(!follow(&then.robots[1]).observer.adaptive);
@@ -148,10 +158,10 @@ fn one_robot_of_a_group_may_differ() {
     assert_eq!((first.vehicle.kind, first.vehicle.mass), (VehicleKind::Car, 7.0));
     assert_eq!((third.vehicle.friction, third.vehicle.mass), (0.7, 6.0));
     assert_eq!((follow(third).law.k, follow(third).law.beta), ([4.0; 2], [1.0; 2]));
-    assert_eq!(follow(third).distance, ScalarTrajectory::Constant(1.5));
+    assert_eq!(*distance(follow(third)), ScalarTrajectory::Constant(1.5));
     assert_eq!((fourth.vehicle.kind, fourth.vehicle.mass), (VehicleKind::Differential, 8.0));
-    assert_eq!(follow(fourth).bearing, ScalarTrajectory::Constant(170f64.to_radians()));
-    assert_eq!((follow(fifth).law.k, &follow(fifth).distance), ([2.0; 2], &ScalarTrajectory::Constant(2.0)));
+    assert_eq!(*bearing(follow(fourth)), ScalarTrajectory::Constant(170f64.to_radians()));
+    assert_eq!((follow(fifth).law.k, distance(follow(fifth))), ([2.0; 2], &ScalarTrajectory::Constant(2.0)));
     let plain = load(&format!("{GROUP}vehicle = {{ kind = \"car\", mass = 6.0 }}\n"));
     assert!(scene.robots.iter().zip(&plain.robots).all(|(a, b)| a.pose == b.pose), "starts are the group's");
 }
@@ -174,7 +184,7 @@ fn members_that_a_group_does_not_have_are_told() {
 fn overrides_and_changes_reach_robots_of_groups() {
     let set: Override = "robots.robot-3.distance=1.5".parse().unwrap();
     let scene = Scene::parse(GROUP, "t.toml", &[set]).unwrap().scene;
-    assert_eq!(follow(&scene.robots[2]).distance, ScalarTrajectory::Constant(1.5));
+    assert_eq!(*distance(follow(&scene.robots[2])), ScalarTrajectory::Constant(1.5));
     let text = format!(
         "{GROUP}{}{}",
         change("1", "\"robots.robot-3.law.k=3\""),
@@ -184,7 +194,7 @@ fn overrides_and_changes_reach_robots_of_groups() {
     assert_eq!(scene.changes[0].set, ["robots.robot-3.law.k=[3.0, 3.0]"]);
     let then = &scene.changes[1].then;
     assert_eq!(then.robots[6].pose, scene.robots[6].pose);
-    assert_eq!(follow(&then.robots[6]).distance, ScalarTrajectory::Constant(3.0));
+    assert_eq!(*distance(follow(&then.robots[6])), ScalarTrajectory::Constant(3.0));
     let set: Override = "robots.robot-33.distance=1.5".parse().unwrap();
     let fault = Scene::parse(GROUP, "t.toml", &[set]).unwrap_err().to_string();
     assert!(fault.contains("did you mean `robot-3`?"), "{fault}");
@@ -208,8 +218,8 @@ fn hundreds_of_changes_are_read_in_no_time() {
 fn one_robot_of_a_group_may_follow_another() {
     let scene =
         load(&format!("{GROUP}[groups.members.robot-5]\nleader = \"robot-1\"\nbearing = \"180 deg\"\n"));
-    assert_eq!(follow(&scene.robots[4]).leader, "robot-1");
-    assert_eq!(follow(&scene.robots[6]).leader, "robot-5");
+    assert_eq!(follow(&scene.robots[4]).leaders.first.name, "robot-1");
+    assert_eq!(follow(&scene.robots[6]).leaders.first.name, "robot-5");
     let unknown = fault(&format!("{GROUP}[groups.members.robot-5]\nleader = \"robot-l\"\n"));
     assert!(unknown.to_string().contains("there is no robot called `robot-l`"), "{unknown}");
 }

@@ -53,7 +53,7 @@ fn whoever_joins_follows_by_the_scenes_law_or_the_events() {
         "[[events]]\nat = 3.0\nrobot = \"dan\"\nleader = \"ann\"\ndistance = 2.0\nbearing = \"90 deg\"\n";
     let scene = load(&format!("{event}law = {{ beta = 2.0 }}\n[law]\nk = 3.0\n"));
     let [(name, follow)] = &scene.joining()[..] else { panic!("one joins") };
-    assert_eq!((*name, &*follow.leader), ("dan", "ann"));
+    assert_eq!((*name, &*follow.leaders.first.name), ("dan", "ann"));
     assert_eq!((follow.law.k, follow.law.beta), ([3.0; 2], [2.0; 2]));
     assert!(load("").joining().is_empty());
 }

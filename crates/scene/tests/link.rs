@@ -54,8 +54,8 @@ fn a_link_opens_to_the_scene_with_all_that_it_sets() {
         .expect("a scene");
     let (_, follow) = opened.scene.followers().next().expect("a follower");
     assert_eq!(
-        (follow.law.k, follow.bearing.clone()),
-        ([3.0, 3.0], vocabulary::ScalarTrajectory::Constant(-120_f64.to_radians()))
+        (follow.law.k, follow.leaders.first.bearing.clone()),
+        ([3.0, 3.0], Some(vocabulary::ScalarTrajectory::Constant(-120_f64.to_radians())))
     );
     assert_eq!((opened.scene.changes.len(), opened.scene.changes[0].at), (1, 2.5));
     // Changes make it another run than the one that is expected.

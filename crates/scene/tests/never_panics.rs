@@ -45,8 +45,11 @@ fn assert_sound(scene: &Scene) {
     for robot in &scene.robots {
         assert!(robot.vehicle.speed_min < robot.vehicle.speed_max);
         if let Role::Follow(follow) = &robot.role {
-            assert!(scene.index_of(&follow.leader).is_some());
-            assert!(follow.distance.range()[0] >= follow.law.distance_min);
+            for leader in follow.leaders.iter() {
+                assert!(scene.index_of(&leader.name).is_some());
+                assert!(leader.distance.as_ref().is_none_or(|d| d.range()[0] >= follow.law.distance_min));
+                assert!(leader.distance.is_some() || leader.bearing.is_some());
+            }
         }
     }
 }

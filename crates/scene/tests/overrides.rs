@@ -38,9 +38,15 @@ fn values_are_put_where_the_path_says() {
     .unwrap();
     assert_eq!((scene.time.duration, scene.seed, scene.title.as_str()), (5.0, 9, "Another title"));
     let Role::Follow(follow) = &scene.robots[1].role else { panic!("robot 1 follows") };
-    assert_eq!((&follow.distance, follow.law.k), (&ScalarTrajectory::Constant(1.5), [4.0, 6.0]));
+    assert_eq!(
+        (&follow.leaders.first.distance, follow.law.k),
+        (&Some(ScalarTrajectory::Constant(1.5)), [4.0, 6.0])
+    );
     assert_eq!(follow.law.kind, LawKind::FullState);
-    assert_eq!(follow.bearing, ScalarTrajectory::Sinusoid { mean: 2.0, amplitude: 0.1, rate: 1.0 });
+    assert_eq!(
+        follow.leaders.first.bearing,
+        Some(ScalarTrajectory::Sinusoid { mean: 2.0, amplitude: 0.1, rate: 1.0 })
+    );
     assert_eq!(scene.robots[0].role, Role::Lead { path: Path::Circle { speed: 1.0, turn_rate: -0.2 } });
 }
 
@@ -101,7 +107,7 @@ fn names_may_be_written_with_combining_marks() {
                  path = { kind = \"constant\" }\n[groups.members.\"am\u{e9}-2\"]\ndistance = 1.5\n";
     let scene = Scene::parse(group, "test.toml", &[]).unwrap_or_else(|faults| panic!("{faults}")).scene;
     let Role::Follow(follow) = &scene.robots[1].role else { panic!("it follows") };
-    assert_eq!(follow.distance, ScalarTrajectory::Constant(1.5));
+    assert_eq!(follow.leaders.first.distance, Some(ScalarTrajectory::Constant(1.5)));
     // A mark alone is no letter that anything else would take.
     assert!(Scene::parse(&SCENE.replace("name = \"leader\"", "name = \"a b\""), "test.toml", &[]).is_err());
 }

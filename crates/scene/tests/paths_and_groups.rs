@@ -143,13 +143,21 @@ fn groups_without_scatter_start_in_formation() {
         assert_eq!(scene.robots.len(), 8);
         for robot in &scene.robots {
             let Role::Follow(follow) = &robot.role else { continue };
-            let leader = &scene.robots[scene.index_of(&follow.leader).unwrap()];
+            let leader = &scene.robots[scene.index_of(&follow.leaders.first.name).unwrap()];
             let (dx, dy) = (robot.pose.x - leader.pose.x, robot.pose.y - leader.pose.y);
             let bearing = vocabulary::wrap(math::atan2(dy, dx) - leader.pose.heading);
-            let ScalarTrajectory::Constant(wanted) = follow.bearing else { panic!("a constant bearing") };
-            let ScalarTrajectory::Constant(distance) = follow.distance else { panic!("a constant distance") };
+            let Some(ScalarTrajectory::Constant(wanted)) = follow.leaders.first.bearing else {
+                panic!("a constant bearing")
+            };
+            let Some(ScalarTrajectory::Constant(distance)) = follow.leaders.first.distance else {
+                panic!("a constant distance")
+            };
             assert!((math::hypot(dx, dy) - distance).abs() < 1e-9, "{shape}: {}", robot.name);
-            assert!(if follows == "leader" { follow.leader == "robot-1" } else { distance == 2.0 });
+            assert!(if follows == "leader" {
+                follow.leaders.first.name == "robot-1"
+            } else {
+                distance == 2.0
+            });
             assert!(vocabulary::wrap(bearing - wanted).abs() < 1e-9, "{shape}: {}", robot.name);
         }
     }
@@ -163,7 +171,7 @@ fn a_group_can_follow_a_robot_and_differ_from_the_scene() {
     let followers: Vec<_> = scene.robots[1..]
         .iter()
         .map(|robot| match &robot.role {
-            Role::Follow(follow) => (robot.name.as_str(), follow.leader.as_str(), follow.law.k),
+            Role::Follow(follow) => (robot.name.as_str(), follow.leaders.first.name.as_str(), follow.law.k),
             Role::Lead { .. } => panic!("{} follows", robot.name),
         })
         .collect();
@@ -217,7 +225,7 @@ fn members_have_names_of_their_own_and_places_stay_empty() {
     assert_eq!(names, ["robot-1", "robot-2", "left", "robot-5"]);
     assert_eq!(scene.robots[3].pose, whole.robots[4].pose);
     let Role::Follow(follow) = &scene.robots[3].role else { panic!("robot-5 follows") };
-    assert_eq!(follow.leader, "left");
+    assert_eq!(follow.leaders.first.name, "left");
     let set = ["robots.left.distance=1.5".parse().unwrap(), "robots.robot-4.absent=false".parse().unwrap()];
     let text = format!(
         "{group}[groups.members.robot-3]\nname = \"left\"\n[groups.members.robot-4]\nabsent = true\n"

@@ -107,8 +107,11 @@ fn a_small_scene_has_the_papers_values() {
         panic!("the leader is to drive the paper's circle");
     };
     let Role::Follow(follow) = &scene.robots[1].role else { panic!("robot 1 is to follow") };
-    assert_eq!((follow.speed, &follow.distance), (0.01, &ScalarTrajectory::Constant(2.0)));
-    assert_eq!(follow.bearing, ScalarTrajectory::Constant(-0.75 * PI));
+    assert_eq!(
+        (follow.speed, &follow.leaders.first.distance),
+        (0.01, &Some(ScalarTrajectory::Constant(2.0)))
+    );
+    assert_eq!(follow.leaders.first.bearing, Some(ScalarTrajectory::Constant(-0.75 * PI)));
     assert_eq!((follow.law.k, follow.law.beta, follow.law.slope), ([5.0; 2], [5.0; 2], [24.53; 2]));
     assert_eq!((follow.observer.epsilon, follow.observer.alpha1), ([0.001; 2], [2.0; 2]));
     let limits = scene.robots[1].vehicle.limits();
@@ -125,11 +128,13 @@ fn groups_become_robots_near_their_places() {
         .robots
         .iter()
         .filter_map(|robot| match &robot.role {
-            Role::Follow(follow) => Some((follow.leader.as_str(), follow.bearing.clone())),
+            Role::Follow(follow) => {
+                Some((follow.leaders.first.name.as_str(), follow.leaders.first.bearing.clone()))
+            }
             Role::Lead { .. } => None,
         })
         .collect();
-    let wing = |leader, side: f64| (leader, ScalarTrajectory::Constant(side * 0.75 * PI));
+    let wing = |leader, side: f64| (leader, Some(ScalarTrajectory::Constant(side * 0.75 * PI)));
     assert_eq!(
         leaders,
         [

@@ -13,9 +13,9 @@ use formation::{
 };
 use perception::proximity::{ProximityConfig, ProximitySensor};
 use perception::sensors::{CameraSettings, NoiseModel, Sensor, SensorConfig, SensorKind};
-use scene::{Follow, OnContact, Role, Scene, SensingKind, SwitchingKind, Vision};
+use scene::{Follow, Leader, OnContact, Role, Scene, SensingKind, SwitchingKind, Vision};
 use std::sync::Arc;
-use vocabulary::{Edge, FleetInfo, HeadingReference, Light, RobotInfo, TimeMode};
+use vocabulary::{Edge, FleetInfo, HeadingReference, Light, RobotInfo, ScalarTrajectory, TimeMode};
 use world::{Unicycle, WorldSetup};
 
 /// Puts the run of `scene` together.
@@ -24,18 +24,19 @@ use world::{Unicycle, WorldSetup};
 /// [`BuildError`], naming the robots.
 pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     let names: Vec<&str> = scene.robots.iter().map(|r| &*r.name).collect();
-    let followers: Vec<(&str, &Follow)> = scene.followers().collect();
-    let pairs: Vec<(&str, &str)> = followers.iter().map(|(name, follow)| (&*follow.leader, *name)).collect();
+    let pairs: Vec<(&str, &str)> = scene.edges().map(|(name, _, leader)| (&*leader.name, name)).collect();
     let mut graph = Graph::new(&names, &pairs)?;
     let joining = scene.joining();
     for (name, follow) in &joining {
-        let ends = [&*follow.leader, *name].map(|name| scene.index_of(name));
+        let ends = [&*follow.leaders.first.name, *name].map(|name| scene.index_of(name));
         if let [Some(leader), Some(follower)] = ends {
             graph.add_waiting(Edge { leader, follower });
         }
     }
+    // One entry per edge, in the order of the graph's.
+    let later = joining.iter().map(|(name, follow)| (*name, follow));
     let followers: Vec<(&str, &Follow)> =
-        followers.into_iter().chain(joining.iter().map(|(name, follow)| (*name, follow))).collect();
+        scene.edges().map(|(name, follow, _)| (name, follow)).chain(later).collect();
     check_continuous(scene, &followers)?;
 
     let mut stage = stage(scene)?;
@@ -72,6 +73,11 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             },
             robots: members,
             edges,
+            free: if laws.iter().any(|law| law.free != [false; 2]) {
+                laws.iter().map(|law| law.free).collect()
+            } else {
+                vec![]
+            },
             has_sensors: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
             has_laws: scenes_of(scene).any(|scene| {
                 scene.followers().any(|(_, follow)| follow.law.custom().is_some())
@@ -134,9 +140,13 @@ fn check_continuous(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), 
     Ok(())
 }
 
-/// The law, observer and set point of a follower, as the loop uses them.
-pub fn edge_law(follow: &Follow) -> EdgeLaw {
+/// The law and observer of a follower, and its set point behind one of its leaders, as the loop uses them. What is left free
+/// of that has the values `now`, [distance in m, bearing in rad].
+pub fn edge_law(follow: &Follow, leader: &Leader, now: [f64; 2]) -> EdgeLaw {
     let (law, observer) = (&follow.law, observer(follow));
+    let channel = |wanted: &Option<ScalarTrajectory>, now: f64| {
+        wanted.clone().unwrap_or(ScalarTrajectory::Constant(now))
+    };
     EdgeLaw {
         law: formation::Law {
             kind: law.kind,
@@ -157,8 +167,11 @@ pub fn edge_law(follow: &Follow) -> EdgeLaw {
         custom: law.custom().map(|custom| Custom::new(custom.name(), custom.law(), law.values())),
         observer,
         tracker: tracker_parameters(follow, observer),
-        set_point: SetPointTrajectory { distance: follow.distance.clone(), bearing: follow.bearing.clone() },
-        free: [false; 2],
+        set_point: SetPointTrajectory {
+            distance: channel(&leader.distance, now[0]),
+            bearing: channel(&leader.bearing, now[1]),
+        },
+        free: [leader.distance.is_none(), leader.bearing.is_none()],
         standing: law.standing,
         narrowing: None,
     }

@@ -3,17 +3,28 @@
 use crate::build::edge_law;
 use formation::column::Filing;
 use formation::{EdgeLaw, Narrowing};
-use scene::{Follow, Robot, Scene};
+use scene::{Follow, Leader, Robot, Scene};
+use vocabulary::Relative;
 
 /// The laws of all followers, in the order of the graph's edges: those that follow from the start, and those that join.
 pub(crate) fn edge_laws(scene: &Scene) -> Vec<EdgeLaw> {
-    let law =
-        |robot: &Robot, follow: &Follow| EdgeLaw { narrowing: narrowing(robot, follow), ..edge_law(follow) };
-    let from_the_start = scene.robots.iter().filter_map(|robot| Some(law(robot, robot.role.follow()?)));
+    let pose = |name: &str| scene.robots.get(scene.index_of(name)?).map(|robot| robot.pose);
+    let law = |robot: &Robot, follow: &Follow, leader: &Leader| {
+        // What is left free is as it is at the start.
+        let free = leader.distance.is_none() || leader.bearing.is_none();
+        let at = free.then(|| pose(&leader.name)).flatten().unwrap_or(robot.pose);
+        let now = Relative::between(at, robot.pose);
+        let law = edge_law(follow, leader, [now.distance, now.bearing]);
+        EdgeLaw { narrowing: narrowing(robot, follow), ..law }
+    };
+    let followers = scene.robots.iter().filter_map(|robot| Some((robot, robot.role.follow()?)));
+    let from_the_start = followers
+        .flat_map(|(robot, follow)| follow.leaders.iter().map(move |leader| (robot, follow, leader)));
+    let from_the_start = from_the_start.map(|(robot, follow, leader)| law(robot, follow, leader));
     let joining = scene.joining();
     let later = joining.iter().filter_map(|(name, follow)| {
         let robot = scene.robots.get(scene.index_of(name)?)?;
-        Some(law(robot, follow))
+        Some(law(robot, follow, &follow.leaders.first))
     });
     from_the_start.chain(later).collect()
 }

@@ -42,7 +42,8 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
                 wanted[k] = at;
             }
         }
-        if graph.is_in_force(index) {
+        // A robot with several leaders looks at the first.
+        if graph.edge_of(edge.follower) == Some(index) {
             robots[edge.follower].camera_pan = pan;
         }
         let mut estimate = run.state.estimates[index].output;

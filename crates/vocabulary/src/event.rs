@@ -55,6 +55,8 @@ words! {
         Nothing = "nothing",
         /// Another event came before it had taken hold.
         Overtaken = "overtaken",
+        /// It is about a robot with several leaders, which keeps them.
+        Several = "several",
     }
 }
 
@@ -141,6 +143,7 @@ impl EventRecord {
             Refusal::Nothing if self.kind == EventKind::Assign => "there is nobody behind it".to_owned(),
             Refusal::Nothing => "there is nobody left to follow".to_owned(),
             Refusal::Overtaken => "another event came first".to_owned(),
+            Refusal::Several => "who has several leaders keeps them".to_owned(),
         }
     }
 }

@@ -101,8 +101,10 @@ pub struct FleetInfo {
     pub light: Light,
     /// In the order of the snapshots.
     pub robots: Vec<RobotInfo>,
-    /// In the order of the edge states.
+    /// In the order of the edge states. A robot with several leaders has several edges, one after the other.
     pub edges: Vec<Edge>,
+    /// Whether [distance, bearing] of each edge are left free: nothing is wanted of them. Empty where all are wanted.
+    pub free: Vec<[bool; 2]>,
     /// Whether any follower measures with a sensor instead of knowing the truth.
     pub has_sensors: bool,
     /// Whether any robot's commands may pass through a safety filter.
@@ -118,6 +120,31 @@ pub struct FleetInfo {
 }
 
 impl FleetInfo {
+    /// Whether [distance, bearing] of edge number `index` are left free.
+    pub fn free(&self, index: usize) -> [bool; 2] {
+        self.free.get(index).copied().unwrap_or_default()
+    }
+
+    /// Numbers of the edges by which `robot` follows at the start, or may follow later.
+    pub fn edges_of(&self, robot: usize) -> impl Iterator<Item = usize> {
+        let own = self.edges.iter().enumerate().filter(move |(_, edge)| edge.follower == robot);
+        own.map(|(index, _)| index)
+    }
+
+    /// Whether `robot` follows several robots at once.
+    pub fn has_several_leaders(&self, robot: usize) -> bool {
+        self.edges_of(robot).nth(1).is_some()
+    }
+
+    /// Whether each robot follows several robots at once.
+    pub fn several_leaders(&self) -> Vec<bool> {
+        let mut counts = vec![0_usize; self.robots.len()];
+        for edge in &self.edges {
+            counts.get_mut(edge.follower).into_iter().for_each(|count| *count += 1);
+        }
+        counts.into_iter().map(|count| count > 1).collect()
+    }
+
     /// Names of the leader and the follower of an edge.
     pub fn pair(&self, edge: Edge) -> [&str; 2] {
         [edge.leader, edge.follower].map(|robot| self.name(EntityId::Robot(robot)))

@@ -319,6 +319,7 @@ fn chain(report: &CertifyReport<'_>, beyond: &Beyond) {
         let name = report.edge(gain.edge);
         if let Some(why) = gain.missing {
             let why = match why {
+                NotLinear::SeveralLeaders => "its follower has several leaders",
                 NotLinear::CustomLaw => "a custom law: `echelon laws test` linearises one",
                 NotLinear::Sign => "the sign has no slope: inside β nothing is passed on",
                 NotLinear::NoSteadyMotion => "no steady motion to linearise about",

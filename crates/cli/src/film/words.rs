@@ -3,7 +3,7 @@
 use super::board::FramePlan;
 use metrics::{EdgeMetrics, Metrics};
 use rendering::{Card, Subtitle};
-use vocabulary::{EntityId, FleetInfo, StepRecord};
+use vocabulary::{FleetInfo, StepRecord};
 
 /// Set points that are listed, at most.
 const MOST_SET_POINTS: usize = 4;
@@ -81,10 +81,20 @@ pub(super) fn line(frame: &FramePlan<'_>, fleet: &FleetInfo, record: &StepRecord
 
 /// Where the followers should be, now.
 fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<String> {
-    let one = |(_, edge, state): (usize, vocabulary::Edge, &vocabulary::EdgeState)| {
+    let several = fleet.several_leaders();
+    let one = |(index, edge, state): (usize, vocabulary::Edge, &vocabulary::EdgeState)| {
         let [distance, bearing] = state.set_point;
-        let degrees = format!("{:.0}", bearing.to_degrees()).replace('-', "\u{2212}");
-        format!("{}  {distance:.2} m  {degrees}°", fleet.name(EntityId::Robot(edge.follower)))
+        let degrees = format!("{:.0}°", bearing.to_degrees()).replace('-', "\u{2212}");
+        let free = fleet.free(index);
+        let [leader, follower] = fleet.pair(edge);
+        let who = if several.get(edge.follower) == Some(&true) {
+            format!("{leader} → {follower}")
+        } else {
+            follower.to_owned()
+        };
+        let parts =
+            [Some(who), (!free[0]).then(|| format!("{distance:.2} m")), (!free[1]).then_some(degrees)];
+        parts.into_iter().flatten().collect::<Vec<_>>().join("  ")
     };
     let all: Vec<String> = record.pairs(fleet).map(one).collect();
     let more = all.len().saturating_sub(MOST_SET_POINTS);

@@ -46,6 +46,8 @@ const HEADING: [usize; 2] = [8, 9];
 /// Why there is no linear edge.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NotLinear {
+    /// The follower has several leaders.
+    SeveralLeaders,
     /// A custom law: what it does is not known here.
     CustomLaw,
     /// The sign has no slope.

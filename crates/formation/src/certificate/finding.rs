@@ -124,6 +124,8 @@ pub struct Circumstances {
     pub custom: bool,
     /// Whether the follower or its leader is a vehicle on wheels.
     pub wheels: bool,
+    /// Whether the follower has several leaders.
+    pub several_leaders: bool,
     /// When the leader first moved as no bounded d²u/dt² allows, s; `None` where it is smooth.
     pub rough_leader: Option<f64>,
 }
@@ -142,6 +144,10 @@ struct FindingView<'a> {
 
 impl FindingView<'_> {
     fn finding(&self, statement: Statement) -> StatementFinding {
+        if self.circumstances.several_leaders {
+            let unmet = vec![Premise::SeveralLeaders];
+            return StatementFinding { statement, unmet, against: None, margin: None };
+        }
         let kind = self.witness.law.kind;
         let robust = kind != LawKind::FullState;
         let observes = kind == LawKind::OutputFeedback && self.constants.is_some();

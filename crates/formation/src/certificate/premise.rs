@@ -20,6 +20,8 @@ pub enum Premise {
     CustomLaw,
     /// The law has no observer.
     NoObserver,
+    /// The follower has several leaders.
+    SeveralLeaders,
     /// β tanh(slope e) stands in for β sign(e).
     Smoothed,
     /// The sign switched from sample to sample, faster than a run in steps follows.
@@ -75,6 +77,9 @@ impl Premise {
             Self::FullState => "the law is told its leader's motion and has no robust term".to_owned(),
             Self::CustomLaw => "the law is none of the paper's".to_owned(),
             Self::NoObserver => "the law has no observer".to_owned(),
+            Self::SeveralLeaders => {
+                "the theorems are about one leader, and the follower has several".to_owned()
+            }
             Self::Smoothed => "tanh instead of sign".to_owned(),
             Self::Chatter(when) => spell("the sign switches faster than steps follow", when),
             Self::Saturated(when) => spell("saturation active", when),

@@ -105,7 +105,7 @@ impl AppState {
             Action::Set { what, values } => self.set(what, values),
             Action::SetPoint { edge, distance, bearing } => self.move_set_point(*edge, [*distance, *bearing]),
             Action::Shape { scale, turn } => self.reshape(*scale, *turn),
-            Action::Connect { leader, follower } => self.connect(*leader, *follower),
+            Action::Connect { leader, follower, adds } => self.connect(*leader, *follower, *adds),
             Action::Happen { robot, what } => self.happen(*robot, *what),
             Action::AddRobot => self.add_robot(),
             Action::RemoveRobot(name) => self.remove_robot(name),
@@ -222,9 +222,18 @@ impl AppState {
         let mut values = Vec::new();
         for (edge, [distance, bearing]) in moves {
             let Some([_, name]) = self.names_of(*edge) else { continue };
-            let least = self.follower(*edge).map_or(0.1, |(_, _, follow)| follow.law.distance_min);
-            values.push((format!("robots.{name}.distance"), toml_number(distance.clamp(least, 1000.0))));
-            values.push((format!("robots.{name}.bearing"), degrees(*bearing)));
+            let (Some((_, _, follow)), Some(leader)) = (self.follower(*edge), self.leader(*edge)) else {
+                continue;
+            };
+            let several = follow.leaders.are_several();
+            let of = if several { format!("leaders.{}.", leader.name) } else { String::new() };
+            if leader.distance.is_some() {
+                let value = toml_number(distance.clamp(follow.law.distance_min, 1000.0));
+                values.push((format!("robots.{name}.{of}distance"), value));
+            }
+            if leader.bearing.is_some() {
+                values.push((format!("robots.{name}.{of}bearing"), degrees(*bearing)));
+            }
         }
         self.set(what, &values);
     }
@@ -264,8 +273,9 @@ impl AppState {
         Some([fleet.robots.get(ends.leader)?.name.clone(), fleet.robots.get(ends.follower)?.name.clone()])
     }
 
-    /// Lets one robot follow another at its current distance and bearing.
-    fn connect(&mut self, leader: usize, follower: usize) {
+    /// Lets one robot follow another at its current distance and bearing; or, where it `adds` a leader to those that it has,
+    /// at its current distances to all of them.
+    fn connect(&mut self, leader: usize, follower: usize, adds: bool) {
         let Some(scene) = self.scene().cloned() else { return };
         let (Some(ahead), Some(behind)) = (scene.robots.get(leader), scene.robots.get(follower)) else {
             return;
@@ -281,12 +291,37 @@ impl AppState {
             record.as_ref().and_then(|m| m.snapshot.robots.get(robot)).map_or(start, |r| r.motion.pose)
         };
         let now = Relative::between(pose(leader, ahead.pose), pose(follower, behind.pose));
+        let has = behind.role.follow().map(|follow| follow.leaders.clone()).filter(|_| adds);
+        if let Some(has) = has.filter(|has| !has.include(&ahead.name)) {
+            let away = |leader: &scene::Leader| {
+                let robot = scene.index_of(&leader.name)?;
+                let now =
+                    Relative::between(pose(robot, scene.robots[robot].pose), pose(follower, behind.pose));
+                Some((leader.name.clone(), now.distance))
+            };
+            let all = has.iter().filter_map(away).chain([(ahead.name.clone(), now.distance)]);
+            let all: Vec<_> = all
+                .map(|(name, distance)| {
+                    let distance = toml_number((distance * 20.0).round() / 20.0);
+                    format!("{{ name = {name:?}, distance = {distance} }}")
+                })
+                .collect();
+            let (name, ahead) = (behind.name.clone(), ahead.name.clone());
+            self.edit(&format!("{name} follows {ahead}, too"), |text| {
+                for key in ["leader", "distance", "bearing", "leaders"] {
+                    text.remove(&format!("robots.{name}.{key}"))?;
+                }
+                text.set(&format!("robots.{name}.leaders"), &format!("[{}]", all.join(", ")))
+            });
+            return;
+        }
         let (name, ahead) = (behind.name.clone(), ahead.name.clone());
         let leads = matches!(behind.role, Role::Lead { .. });
         self.edit(&format!("{name} follows {ahead}"), |text| {
             if leads {
                 text.remove(&format!("robots.{name}.path"))?;
             }
+            text.remove(&format!("robots.{name}.leaders"))?;
             for (key, value) in [
                 ("leader", format!("{ahead:?}")),
                 ("distance", toml_number((now.distance * 20.0).round() / 20.0)),
@@ -363,7 +398,8 @@ impl AppState {
 
     fn remove_robot(&mut self, name: &str) {
         let Some(scene) = self.scene().cloned() else { return };
-        let follows = |robot: &&scene::Robot| matches!(&robot.role, Role::Follow(f) if f.leader == name);
+        let follows =
+            |robot: &&scene::Robot| matches!(&robot.role, Role::Follow(f) if f.leaders.include(name));
         let left: Vec<&str> = scene.robots.iter().filter(follows).map(|robot| &*robot.name).collect();
         if !left.is_empty() {
             let (them, verb) = (left.join(", "), if left.len() == 1 { "follows" } else { "follow" });
@@ -432,17 +468,25 @@ fn seen_from(pose: vocabulary::Pose, [distance, bearing]: [f64; 2]) -> [f64; 2] 
 
 /// Names on the cycle that would arise if `follower` followed `leader`.
 fn circle(scene: &scene::Scene, leader: usize, follower: usize) -> Option<String> {
-    let wanted = &scene.robots.get(follower)?.name;
-    let mut names = vec![wanted.clone()];
-    let mut at = &scene.robots.get(leader)?.name;
-    for _ in 0..=scene.robots.len() {
-        names.push(at.clone());
-        if at == wanted {
-            return Some(names.join(" → "));
+    // From leader to leader; each robot with the one from which it was reached.
+    let mut from: Vec<Option<usize>> = vec![None; scene.robots.len()];
+    let mut open = vec![leader];
+    while let Some(at) = open.pop() {
+        if at == follower {
+            let back = |robot: &usize| (*robot != leader).then(|| from[*robot]).flatten();
+            let mut names: Vec<_> = std::iter::successors(Some(at), back).collect();
+            names.push(follower);
+            names.reverse();
+            let name = |robot: usize| scene.robots.get(robot).map_or("", |robot| &robot.name);
+            return Some(names.into_iter().map(name).collect::<Vec<_>>().join(" → "));
         }
-        match &scene.robots.get(scene.index_of(at)?)?.role {
-            Role::Follow(follow) => at = &follow.leader,
-            Role::Lead { .. } => return None,
+        let follow = scene.robots.get(at)?.role.follow();
+        for next in follow.into_iter().flat_map(|follow| follow.leaders.iter()) {
+            let next = scene.index_of(&next.name)?;
+            if next != leader && from[next].is_none() {
+                from[next] = Some(at);
+                open.push(next);
+            }
         }
     }
     None

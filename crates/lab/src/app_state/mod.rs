@@ -17,7 +17,7 @@ pub use branch_info::BranchInfo;
 pub use law_edit::LawEdit;
 pub use linked::StatusLine;
 use rendering::Trail;
-use scene::{Follow, Link, Role, Scene};
+use scene::{Follow, Leader, Link, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -295,11 +295,25 @@ impl AppState {
     /// The follower of an edge: its index among the robots, its name and its parameters.
     pub fn follower(&self, edge: usize) -> Option<(usize, &str, &Follow)> {
         let scene = self.scene_now()?;
-        let mut followers = scene.robots.iter().enumerate().filter_map(|(index, robot)| match &robot.role {
-            Role::Follow(follow) => Some((index, &*robot.name, &**follow)),
-            Role::Lead { .. } => None,
+        let robots = scene.robots.iter().enumerate();
+        let mut edges = robots.flat_map(|(index, robot)| {
+            let follow = robot.role.follow();
+            let count = follow.map_or(0, |follow| follow.leaders.count());
+            follow.into_iter().cycle().take(count).map(move |follow| (index, &*robot.name, follow))
         });
-        followers.nth(edge)
+        edges.nth(edge)
+    }
+
+    /// Whom an edge leads from in the scene, and what is wanted of it there.
+    pub fn leader(&self, edge: usize) -> Option<&Leader> {
+        Some(self.scene_now()?.edges().nth(edge)?.2)
+    }
+
+    /// All edges of the follower of `edge`, it included.
+    pub fn beside(&self, edge: usize) -> Vec<usize> {
+        let fleet = self.fleet();
+        let own = fleet.and_then(|fleet| Some(fleet.edges_of(fleet.edges.get(edge)?.follower).collect()));
+        own.unwrap_or_default()
     }
 
     /// The follower that panels tune, that of the selected edge or else the first: its edge and what
@@ -322,17 +336,18 @@ impl AppState {
     /// The current set point of an edge, m and rad, as the scene has it: against the heading that its bearing is held
     /// against, which may be behind the leader's own. One that has changed its leader has the place that this gave it.
     pub fn set_point(&self, edge: usize) -> Option<[f64; 2]> {
-        let (robot, name, follow) = self.follower(edge)?;
+        let (robot, name, _) = self.follower(edge)?;
         let given = self.given_place(robot, name);
         let now = self.record().and_then(|record| {
             let state = record.edges.get(edge)?;
             Some([state.set_point[0], wrap(state.set_point[1] + state.behind)])
         });
-        let value = |channel: &ScalarTrajectory, now: Option<f64>| match channel {
-            ScalarTrajectory::Constant(value) if !given => Some(*value),
+        let value = |channel: &Option<ScalarTrajectory>, now: Option<f64>| match channel {
+            Some(ScalarTrajectory::Constant(value)) if !given => Some(*value),
             _ => now,
         };
-        Some([value(&follow.distance, now.map(|n| n[0]))?, value(&follow.bearing, now.map(|n| n[1]))?])
+        let leader = self.leader(edge)?;
+        Some([value(&leader.distance, now.map(|n| n[0]))?, value(&leader.bearing, now.map(|n| n[1]))?])
     }
 
     /// Whether an event has given `robot` its place, and nobody has moved it since.
@@ -377,7 +392,7 @@ impl AppState {
         }
     }
 
-    /// The edge of a follower.
+    /// The edge of a follower, the first of one with several leaders.
     pub fn edge_of(&self, robot: usize) -> Option<usize> {
         self.fleet()?.edges.iter().position(|edge| edge.follower == robot)
     }
@@ -497,7 +512,14 @@ impl AppState {
         let Some(fleet) = self.fleet() else { return };
         let named = |name: &String| fleet.robots.iter().position(|member| member.name == *name);
         let robot = self.chosen.as_ref().and_then(named);
-        let edge = robot.and_then(|robot| fleet.edges.iter().position(|edge| edge.follower == robot));
+        let mut own = robot.into_iter().flat_map(|robot| fleet.edges_of(robot));
+        let first = own.next();
+        let edge = match self.selection {
+            // One with several leaders keeps that of them.
+            Selection::Edge(edge) => own.find(|other| *other == edge).or(first),
+            _ => first,
+        };
+        drop(own);
         self.selection = match (robot, edge, self.selection) {
             (Some(_), Some(edge), Selection::Edge(_)) => Selection::Edge(edge),
             (Some(robot), ..) => Selection::Robot(robot),

@@ -17,7 +17,7 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
         let add = ui.button("+ Robot").on_hover_text("A robot that follows the selected one (Insert)");
         on_click(&add, Action::AddRobot, out);
         let connects = app_state.tool == Tool::Connect;
-        let tip = "Drag in the view from a robot to its new leader (C)";
+        let tip = "Drag in the view from a robot to its new leader (C); with Shift it keeps those it has";
         let label = ui.selectable_label(connects, "Connect").on_hover_text(tip);
         on_click(&label, Action::UseTool(Tool::Connect), out);
     });
@@ -32,10 +32,12 @@ pub fn show(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
 
 /// Robots as they follow one another at the shown time, each after the one it follows, with its depth.
 fn order(fleet: &FleetInfo, record: Option<&StepRecord>) -> Vec<(usize, usize)> {
-    let edges: Vec<Edge> = match record {
+    let mut edges: Vec<Edge> = match record {
         Some(record) => record.pairs(fleet).map(|(_, edge, _)| edge).collect(),
         None => fleet.edges.clone(),
     };
+    // Those of one follower stand together; it is listed behind its first leader.
+    edges.dedup_by_key(|edge| edge.follower);
     let mut rows = Vec::with_capacity(fleet.robots.len());
     let leads = |robot: &usize| edges.iter().all(|edge| edge.follower != *robot);
     let mut open: Vec<(usize, usize)> = (0..fleet.robots.len()).rev().filter(leads).map(|k| (k, 0)).collect();
@@ -69,15 +71,34 @@ fn row(
             let condition = record.and_then(|record| Some(record.snapshot.robots.get(robot)?.condition));
             if let Some(condition @ (Condition::Failed | Condition::Removed)) = condition {
                 ui.label(RichText::new(condition.word()).small().color(ui.visuals().warn_fg_color));
-            } else if let Some(error) = app_state.edge_of(robot).and_then(|edge| {
-                record?.edge(fleet, edge)?;
-                Some(record?.edges.get(edge)?.error)
-            }) {
+            } else if let Some(error) = fleet
+                .edges_of(robot)
+                .filter_map(|edge| {
+                    record?.edge(fleet, edge)?;
+                    Some(record?.edges.get(edge)?.error)
+                })
+                .max_by(|a, b| math::hypot(a[0], a[1]).total_cmp(&math::hypot(b[0], b[1])))
+            {
                 let size = math::hypot(error[0], error[1]);
                 let text = format!("{} m", crate::numbers::fixed(error[0], 2));
                 let weak = RichText::new(text).small();
                 let text = if size > 0.05 { weak.color(ui.visuals().warn_fg_color) } else { weak.weak() };
                 ui.label(text).on_hover_text("Distance error");
+            }
+            let also: Vec<&str> = fleet
+                .edges_of(robot)
+                .filter_map(|edge| {
+                    Some(
+                        fleet.pair(
+                            record.map_or_else(|| fleet.edges.get(edge).copied(), |r| r.edge(fleet, edge))?,
+                        )[0],
+                    )
+                })
+                .skip(1)
+                .collect();
+            if !also.is_empty() {
+                ui.label(RichText::new(format!("+ {}", also.join(", "))).small().weak())
+                    .on_hover_text("Its other leaders");
             }
             label
         })
@@ -87,7 +108,8 @@ fn row(
     if let Some(follower) = response.dnd_release_payload::<usize>()
         && *follower != robot
     {
-        out.push(Action::Connect { leader: robot, follower: *follower });
+        let adds = ui.input(|input| input.modifiers.shift);
+        out.push(Action::Connect { leader: robot, follower: *follower, adds });
     }
     if response.dnd_hover_payload::<usize>().is_some_and(|follower| *follower != robot) {
         let stroke = ui.visuals().selection.stroke;

@@ -4,7 +4,8 @@ use super::feasibility::{self, SIDE, STEP};
 use crate::app_state::{AppState, Selection};
 use crate::session::prediction::{PathPoint, Prediction, Trouble};
 use rendering::{
-    AnnotationArrow, AnnotationStroke, Annotations, Ghost, Ring, ShadedArea, StrokePoint, set_points,
+    AnnotationArrow, AnnotationStroke, Annotations, Ghost, Ring, ShadedArea, StrokePoint, free_places,
+    set_points,
 };
 use std::sync::Arc;
 use vocabulary::{FleetInfo, StepRecord};
@@ -139,15 +140,19 @@ fn handles(
     pointer: &PointerState,
     annotations: &mut Annotations,
 ) {
+    let beside = app_state.chosen_edge().map(|edge| app_state.beside(edge)).unwrap_or_default();
     for (edge, at) in set_points(fleet, record).into_iter().enumerate() {
         let Some(at) = at else { continue };
         let follower = fleet.edges[edge].follower;
         let ring =
             Ring { least: 17.0, ..Ring::new(at, RING * size(fleet, follower), light(colours[follower])) };
+        // With several leaders those beside the chosen edge have theirs, too.
         if pointer.dragged == Some(edge) || app_state.chosen_edge() == Some(edge) {
             annotations.rings.push(ring.selected());
-        } else if pointer.ring == Some(edge) {
+            annotations.strokes.extend(reach(fleet, record, edge, 0.95));
+        } else if pointer.ring == Some(edge) || beside.contains(&edge) {
             annotations.rings.push(ring.hovered());
+            annotations.strokes.extend(reach(fleet, record, edge, 0.55));
         }
     }
     let under = |robot: usize| {
@@ -162,6 +167,14 @@ fn handles(
     if let Some(robot) = pointer.robot {
         annotations.rings.extend(under(robot).map(|ring| Ring { alpha: 0.5, ..ring }));
     }
+}
+
+/// All places that a set point of which a part is left free allows.
+fn reach(fleet: &FleetInfo, record: &StepRecord, edge: usize, alpha: f32) -> Option<AnnotationStroke> {
+    let colour = light(*rendering::robot_colours(fleet).get(fleet.edges.get(edge)?.follower)?);
+    let places = free_places(fleet, record, edge)?;
+    let spots = places.into_iter().map(|at| StrokePoint { at, colour, alpha }).collect();
+    Some(AnnotationStroke { dashed: true, pixels: 2.0, ..AnnotationStroke::new(spots) })
 }
 
 /// Size of a robot relative to the default one.

@@ -58,6 +58,10 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
     let fleet = app_state.fleet()?;
     let ends = record.edge(fleet, edge)?;
     let (robot, _, follow) = app_state.follower(edge)?;
+    if follow.leaders.are_several() {
+        // What its law asks of it there is the law's.
+        return None;
+    }
     let scene = app_state.scene_now()?;
     let leader = record.snapshot.robots.get(ends.leader)?;
     let measures = follow.sensing.kind != scene::SensingKind::Truth;
@@ -77,7 +81,10 @@ pub fn field(app_state: &AppState, edge: usize, record: &StepRecord) -> Option<(
         limits: scene.robots.get(robot)?.limits(),
         distance_min: follow.law.distance_min,
         sight: measures.then_some([far, scene.vision.pan_max + half_picture]),
-        heading: (simulation::edge_law(follow).law.heading, record.edges.get(edge)?.behind),
+        heading: (
+            simulation::edge_law(follow, &follow.leaders.first, [0.0; 2]).law.heading,
+            record.edges.get(edge)?.behind,
+        ),
         others: places.chain([([0.0; 2], reach)]).collect(),
     };
     let motions =

@@ -106,7 +106,12 @@ fn commands() -> Vec<(Action, String, Vec<&'static str>, &'static [&'static str]
             RESTART,
         ),
         (untune("law.k"), three(), vec!["# Gains of all."], RETUNE),
-        (Action::Connect { leader: 1, follower: 2 }, three(), vec!["leader = \"left\""], RESTART),
+        (
+            Action::Connect { leader: 1, follower: 2, adds: false },
+            three(),
+            vec!["leader = \"left\""],
+            RESTART,
+        ),
         (Action::AddRobot, three(), vec!["name = \"follower-1\"", "leader = \"left\""], RESTART),
         (Action::RemoveRobot("right".to_owned()), three(), vec!["# To the left."], RESTART),
         (
@@ -272,20 +277,34 @@ fn nobody_follows_in_a_circle() {
         (3, 3, "robot-4 → robot-4"),
         (6, 0, "robot-1 → robot-7 → robot-5 → robot-3 → robot-1"),
     ] {
-        app_state.act(&Action::Connect { leader, follower });
+        app_state.act(&Action::Connect { leader, follower, adds: false });
         let notice = app_state.notice.take().expect("a notice");
         assert!(notice.contains(circle), "{notice}");
         assert!(text(&app_state) == before && app_state.requests.is_empty());
     }
-    app_state.act(&Action::Connect { leader: 99, follower: 1 });
+    app_state.act(&Action::Connect { leader: 99, follower: 1, adds: false });
     assert!(app_state.notice.is_none() && app_state.requests.is_empty());
+}
+
+#[test]
+fn a_second_leader_needs_a_law_for_two() {
+    let mut app_state = app_state(THREE, 40);
+    let before = text(&app_state);
+    app_state.act(&Action::Connect { leader: 1, follower: 2, adds: true });
+    let notice = app_state.notice.take().expect("a notice");
+    assert!(notice.contains("`right` has 2 leaders, and its law looks at one"), "{notice}");
+    assert!(text(&app_state) == before && app_state.requests.is_empty());
+    // One that it has already is no second: it takes up its present place.
+    app_state.act(&Action::Connect { leader: 0, follower: 2, adds: true });
+    assert_eq!(app_state.notice, None);
+    assert!(text(&app_state) != before);
 }
 
 #[test]
 fn a_lead_robot_becomes_a_follower_where_it_is() {
     let second = "\n[[robots]]\nname = \"second\" # on its own\npose = [3.0, 4.0, 0.0]\npath = { kind = \"constant\", speed = 1.0 }\n";
     let mut app_state = app_state(&format!("{THREE}{second}"), 40);
-    app_state.act(&Action::Connect { leader: 0, follower: 3 });
+    app_state.act(&Action::Connect { leader: 0, follower: 3, adds: false });
     assert_eq!(app_state.notice, None);
     let now = app_state.record().expect("a moment");
     let relative =
@@ -320,7 +339,9 @@ fn robots_are_added_where_there_is_room() {
             assert!(apart >= 1.0, "{} and {} are {apart} m apart", a.name, b.name);
         }
     }
-    assert!(matches!(&scene.robots[5].role, scene::Role::Follow(follow) if follow.leader == "follower-2"));
+    assert!(
+        matches!(&scene.robots[5].role, scene::Role::Follow(follow) if follow.leaders.first.name == "follower-2")
+    );
     assert_eq!(rig.app_state.history.as_ref().expect("a run").fleet().robots.len(), 6);
 }
 

@@ -19,7 +19,7 @@ pub use sightline::Scenery;
 use crate::imaging::{Purpose, noise_stream};
 use crate::pose::{Prior, Rig, SeenFace, locate};
 use pan::Pan;
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 use vocabulary::{
     CameraRenderer, Edge, Measurement, MeasurementRecord, Outcome, Prop, Relative, RobotInfo, Snapshot,
     StepInterpolant, Terrain, TrackingState,
@@ -85,6 +85,8 @@ pub struct SensorState {
 /// State of one follower's senses.
 #[derive(Debug, Clone)]
 struct EdgeWatch {
+    /// Whose random numbers its errors are, beside the seed.
+    stream: usize,
     /// Measurements taken so far.
     taken: u64,
     pan: Pan,
@@ -139,11 +141,16 @@ impl SensorConfig {
 
     /// The state before the first measurement: cameras point at the leaders as they stand.
     pub fn start(&self, snapshot: &Snapshot) -> SensorState {
+        let mut before: HashMap<usize, usize> = HashMap::new();
         let sensor_state = |edge: &Edge| {
+            // Measurements of a second leader have errors of their own.
+            let count = before.entry(edge.follower).or_default();
+            let stream = edge.follower + self.robots.len() * std::mem::replace(count, *count + 1);
             let (leader, follower) = (&snapshot.robots[edge.leader], &snapshot.robots[edge.follower]);
             let relative = Relative::between(leader.motion.pose, follower.motion.pose);
             let camera_mount = self.robots[edge.follower].camera_mount;
             EdgeWatch {
+                stream,
                 taken: 0,
                 pan: Pan::at(pan::towards(&relative, camera_mount.forward), &self.camera),
                 drift: noise::Drift::default(),
@@ -277,7 +284,8 @@ impl SensorConfig {
             pan: robot(exposure.follower).camera_pan,
             ..MeasurementRecord::default()
         };
-        let stream = |purpose| noise_stream(self.seed, exposure.follower, exposure.number, purpose);
+        let source = sensor_state.edges[exposure.edge].stream;
+        let stream = |purpose| noise_stream(self.seed, source, exposure.number, purpose);
         if stream(Purpose::Dropouts).uniform() < sensor.drop {
             frame.outcome = Outcome::Dropped;
             return frame;

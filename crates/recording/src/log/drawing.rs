@@ -36,7 +36,9 @@ pub(super) struct Drawing {
     /// Of robots whose cameras measure: calibration and pictures.
     cameras: Vec<Option<[u16; 2]>>,
     colours: Vec<Color>,
-    frames: Vec<[String; 3]>,
+    frames: Vec<[String; 2]>,
+    /// Frames of set points, per edge.
+    goals: Vec<String>,
     next: f64,
     next_ribbon: f64,
     /// When ribbons were drawn last.
@@ -85,6 +87,7 @@ impl Drawing {
             poses: vec![],
             cameras: vec![],
             frames: vec![],
+            goals: solids::goal_frames(fleet),
             next: 0.0,
             next_ribbon: 0.0,
             drawn: 0.0,
@@ -104,8 +107,7 @@ impl Drawing {
             } else {
                 None
             });
-            let goal = format!("{frame}/set-point");
-            drawing.frames.push([frame, camera, goal]);
+            drawing.frames.push([frame, camera]);
         }
         Ok(drawing)
     }
@@ -175,22 +177,15 @@ impl Drawing {
         };
         let Snapshot { robots, props, .. } = &record.snapshot;
         let seen = robots.iter().zip(&self.frames);
-        let mut all: Vec<FrameTransform> = seen
-            .map(|(robot, [name, ..])| transform(solids::WORLD, name, &robot.world_from_body()))
-            .collect();
+        let mut all: Vec<FrameTransform> =
+            seen.map(|(robot, [name, _])| transform(solids::WORLD, name, &robot.world_from_body())).collect();
         for (index, (robot, member)) in robots.iter().zip(&self.fleet.robots).enumerate() {
-            if let (Some(Some(_)), Some([name, camera, _])) =
-                (self.cameras.get(index), self.frames.get(index))
-            {
+            if let (Some(Some(_)), Some([name, camera])) = (self.cameras.get(index), self.frames.get(index)) {
                 all.push(transform(name, camera, &member.camera_mount.body_from_camera(robot.camera_pan)));
             }
         }
-        for (edge, state) in self.fleet.edges.iter().zip(&record.edges) {
-            let (Some(leader), Some([_, _, goal])) =
-                (robots.get(edge.leader), self.frames.get(edge.follower))
-            else {
-                continue;
-            };
+        for ((edge, state), goal) in self.fleet.edges.iter().zip(&record.edges).zip(&self.goals) {
+            let Some(leader) = robots.get(edge.leader) else { continue };
             let [distance, bearing] = state.set_point;
             let pose = leader.motion.pose;
             let [x, y] = pose.world_from_body(distance * math::cos(bearing), distance * math::sin(bearing));
@@ -251,7 +246,7 @@ impl Drawing {
     /// Writes a picture of a camera, with what is needed to measure in it.
     pub(super) fn photo(&mut self, photo: &Photo, to: &mut Channels) -> Result<(), Error> {
         let Some(Some([calibration, image])) = self.cameras.get(photo.robot) else { return Ok(()) };
-        let (Some(member), Some([_, frame, _])) =
+        let (Some(member), Some([_, frame])) =
             (self.fleet.robots.get(photo.robot), self.frames.get(photo.robot))
         else {
             return Ok(());

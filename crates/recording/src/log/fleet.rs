@@ -26,7 +26,31 @@ impl Record for FleetInfo {
         self.terrain = terrain.into_iter().next().map(Arc::new);
         f.flag("has_safety", &mut self.has_safety)?;
         f.flag("has_events", &mut self.has_events)?;
-        f.flag("has_laws", &mut self.has_laws)
+        f.flag("has_laws", &mut self.has_laws)?;
+        let mut free = self
+            .free
+            .iter()
+            .map(|[distance, bearing]| FreeParts { distance: *distance, bearing: *bearing })
+            .collect();
+        f.each("free", &mut free)?;
+        self.free = free.into_iter().map(|free| [free.distance, free.bearing]).collect();
+        Some(())
+    }
+}
+
+/// What is left free of the set point of an edge.
+#[derive(Default)]
+struct FreeParts {
+    distance: bool,
+    bearing: bool,
+}
+
+impl Record for FreeParts {
+    const NAME: &'static str = "FreeParts";
+
+    fn list<F: Fields>(&mut self, f: &mut F) -> Option<()> {
+        f.flag("distance", &mut self.distance)?;
+        f.flag("bearing", &mut self.bearing)
     }
 }
 

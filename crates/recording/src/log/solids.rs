@@ -6,7 +6,7 @@ use foxglove::messages::{
     TriangleListPrimitive, Vector3, line_primitive::Type,
 };
 use std::f64::consts::TAU;
-use vocabulary::{FleetInfo, Mobility, Placement, Prop, RobotInfo, Solid, Terrain, math};
+use vocabulary::{Edge, FleetInfo, Mobility, Placement, Prop, RobotInfo, Solid, Terrain, math};
 
 /// The frame in which all others are.
 pub(super) const WORLD: &str = "world";
@@ -42,13 +42,30 @@ fn pose(x: f64, y: f64, z: f64) -> Pose {
 /// Everything that is drawn once.
 pub(super) fn entities(fleet: &FleetInfo, colours: &[Color]) -> Vec<SceneEntity> {
     let robots = fleet.robots.iter().zip(colours).map(|(member, colour)| robot(member, *colour));
-    let rings = fleet.edges.iter().filter_map(|edge| {
-        let (follower, colour) = (fleet.robots.get(edge.follower)?, colours.get(edge.follower)?);
-        Some(ring(&format!("{}/set-point", robot_frame(follower)), *colour))
-    });
+    let goals = goal_frames(fleet);
+    let rings = fleet
+        .edges
+        .iter()
+        .zip(&goals)
+        .filter_map(|(edge, goal)| Some(ring(goal, *colours.get(edge.follower)?)));
     let props = fleet.props.iter().map(prop);
     let ground = fleet.terrain.iter().map(|terrain| ground(terrain));
     robots.chain(rings).chain(props).chain(ground).collect()
+}
+
+/// The frames of the set points of all edges; those of a robot's further leaders are numbered.
+pub(super) fn goal_frames(fleet: &FleetInfo) -> Vec<String> {
+    let mut counts = vec![0_usize; fleet.robots.len()];
+    let frame = |edge: &Edge| {
+        let (Some(count), Some(robot)) = (counts.get_mut(edge.follower), fleet.robots.get(edge.follower))
+        else {
+            return String::new();
+        };
+        *count += 1;
+        let goal = format!("{}/set-point", robot_frame(robot));
+        if *count == 1 { goal } else { format!("{goal}-{count}") }
+    };
+    fleet.edges.iter().map(frame).collect()
 }
 
 fn locked(frame: &str) -> SceneEntity {

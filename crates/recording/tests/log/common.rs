@@ -68,6 +68,7 @@ pub(crate) fn fleet() -> FleetInfo {
             member("cy", false),
         ],
         edges: vec![Edge { leader: 0, follower: 1 }, Edge { leader: 1, follower: 2 }],
+        free: vec![[false, true], [false, false]],
         has_sensors: true,
         has_safety: true,
         has_laws: true,

@@ -179,7 +179,33 @@ pub(crate) fn sizes(fleet: &FleetInfo) -> f64 {
     fleet.robots.iter().map(|m| crate::gpu::model::size(&m.body)).fold(0.0, f64::max)
 }
 
-/// The set point of each edge on the ground, m; `None` where its follower follows nobody.
+/// All places on the ground that the set point of edge number `index` allows, m, as a line: the circle of a wanted distance
+/// around the leader where the bearing is left free, the ray of a wanted bearing where the distance is. The line begins and
+/// ends opposite the follower, or at the leader. `None` where both are wanted, or nobody is followed.
+pub fn free_places(fleet: &FleetInfo, record: &StepRecord, index: usize) -> Option<Vec<[f64; 2]>> {
+    let free = fleet.free(index);
+    let state = record.edges.get(index)?;
+    let leader = record.snapshot.robots.get(record.edge(fleet, index)?.leader)?.motion.pose;
+    let [distance, bearing] = state.set_point;
+    let place = |k: u32| {
+        let share = f64::from(k) / f64::from(SIDES);
+        match free {
+            [false, true] => {
+                Some(leader.polar(distance, bearing + (2.0 * share - 1.0) * std::f64::consts::PI))
+            }
+            [true, false] => Some(leader.polar(1.5 * share * distance, bearing)),
+            _ => None,
+        }
+    };
+    let places = (0..=SIDES).map(place).collect::<Option<Vec<_>>>()?;
+    places.iter().flatten().all(|x| x.is_finite()).then_some(places)
+}
+
+/// Sides of what is drawn for a circle.
+const SIDES: u32 = 96;
+
+/// The set point of each edge on the ground, m; `None` where its follower follows nobody. What is left free of one is as it
+/// is.
 pub fn set_points(fleet: &FleetInfo, record: &StepRecord) -> Vec<Option<[f64; 2]>> {
     let place = |k: usize| {
         let state = record.edges.get(k)?;
@@ -276,6 +302,31 @@ mod tests {
         let entries = copy.marks.entries.len() + copy.errors.entries.len();
         let own = rows * size_of::<PoseRow>() + entries * size_of::<(f64, Arc<[SkidMark]>)>();
         assert!(own < 30_000, "{own}");
+    }
+
+    #[test]
+    fn what_is_left_free_of_a_set_point_is_a_circle_or_a_ray() {
+        let robots = vec![RobotInfo::new("a", true, vocabulary::Body::default()); 2];
+        let edges = vec![vocabulary::Edge { leader: 0, follower: 1 }];
+        let mut fleet = FleetInfo { robots, edges, ..FleetInfo::default() };
+        let mut robots = vec![RobotState::default(); 2];
+        robots[0].motion.pose = Pose::new(1.0, 2.0, 0.5);
+        let edge = vocabulary::EdgeState { set_point: [2.0, 2.5], ..vocabulary::EdgeState::default() };
+        let snapshot = Snapshot { robots, ..Snapshot::default() };
+        let record = StepRecord { snapshot, edges: vec![edge], ..StepRecord::default() };
+        assert_eq!(free_places(&fleet, &record, 0), None);
+        let goal = set_points(&fleet, &record)[0].expect("a set point");
+        let away = |[x, y]: [f64; 2], [u, v]: [f64; 2]| vocabulary::math::hypot(x - u, y - v);
+        fleet.free = vec![[false, true]];
+        let circle = free_places(&fleet, &record, 0).expect("a circle");
+        assert!(circle.iter().all(|place| (away(*place, [1.0, 2.0]) - 2.0).abs() < 1e-12));
+        assert!(away(circle[circle.len() / 2], goal) < 1e-12, "the follower is in its middle");
+        assert!(away(circle[0], circle[circle.len() - 1]) < 1e-12, "it is closed");
+        fleet.free = vec![[true, false]];
+        let ray = free_places(&fleet, &record, 0).expect("a ray");
+        assert_eq!((ray[0], ray.len()), ([1.0, 2.0], circle.len()));
+        let end = ray[ray.len() - 1];
+        assert!((away(end, goal) - 1.0).abs() < 1e-12 && (away(end, [1.0, 2.0]) - 3.0).abs() < 1e-12);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use super::{Drawn, NAMED, number, quoted};
 use crate::trace::Trace;
 use figures::{Arrow, Note, Plan, PlanNode, Side};
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use vocabulary::math;
 
@@ -27,14 +28,30 @@ pub(crate) fn places(run: &Trace, sample: usize) -> Vec<[f64; 2]> {
             *place = None;
         }
     }
-    // A formation is a forest: every round places the followers of those placed before.
+    // A formation has no rings: every round places the followers of those placed before, one of several leaders in the
+    // middle between where each wants it.
+    let is_several = run.fleet.several_leaders();
+    let mut several: BTreeMap<usize, Vec<Option<[f64; 2]>>> = BTreeMap::new();
     for _ in 0..run.fleet.robots.len() {
+        several.clear();
         for (index, edge) in run.pairs(sample) {
             let leader = places.get(edge.leader).copied().flatten();
             let row = run.edges.get(index).and_then(|rows| rows.get(sample));
-            if let (Some([x, y]), Some(row), Some(place)) = (leader, row, places.get_mut(edge.follower)) {
+            let wanted = leader.zip(row).map(|([x, y], row)| {
                 let [distance, bearing] = row.set_point;
-                *place = Some([x + distance * math::cos(bearing), y + distance * math::sin(bearing)]);
+                [x + distance * math::cos(bearing), y + distance * math::sin(bearing)]
+            });
+            if is_several.get(edge.follower) == Some(&true) {
+                several.entry(edge.follower).or_default().push(wanted);
+            } else if let (Some(wanted), Some(place)) = (wanted, places.get_mut(edge.follower)) {
+                *place = Some(wanted);
+            }
+        }
+        for (follower, wanted) in &several {
+            let sum =
+                wanted.iter().try_fold([0.0; 2], |sum, place| place.map(|[x, y]| [sum[0] + x, sum[1] + y]));
+            if let (Some(sum), Some(place)) = (sum, places.get_mut(*follower)) {
+                *place = Some(sum.map(|sum| sum / wanted.len() as f64));
             }
         }
     }
@@ -70,14 +87,17 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
         let Some(row) = run.edges.get(index).and_then(|rows| rows.get(sample)) else { continue };
         let [distance, bearing] = row.set_point;
         let name = |robot: usize| run.fleet.robots.get(robot).map_or("", |m| m.name.as_str());
+        // Of what is left free nothing is said.
+        let free = run.fleet.free(index);
+        let said = |value: f64, free: bool| if free { String::new() } else { number(value) };
         let _ = writeln!(
             csv,
             "{},{},{},{},{}",
             quoted(name(edge.leader)),
             quoted(name(edge.follower)),
-            number(distance),
-            number(bearing),
-            number(bearing.to_degrees())
+            said(distance, free[0]),
+            said(bearing, free[1]),
+            said(bearing.to_degrees(), free[1])
         );
         let (Some(from), Some(to)) = (page.get(edge.leader), page.get(edge.follower)) else { continue };
         plan.arrows.push(Arrow { from: *from, to: *to, free: radius + 1.2, colour: [0.35; 3] });
@@ -85,7 +105,8 @@ pub(crate) fn graph(run: &Trace, time: f64) -> Drawn {
             let at = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
             let degrees = format!("{:+.0}°", bearing.to_degrees()).replace('-', "−");
             let side = if at[0] > middle { Side::Right } else { Side::Left };
-            let text = format!("{distance:.2} m, {degrees}");
+            let parts = [(!free[0]).then(|| format!("{distance:.2} m")), (!free[1]).then_some(degrees)];
+            let text = parts.into_iter().flatten().collect::<Vec<_>>().join(", ");
             plan.notes.push(Note { at, text, side, off: 6.0, colour: None });
         }
     }

@@ -38,9 +38,17 @@ pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<PathStep>, EditError
             let Some(PathStep::Key(key)) = steps.last() else {
                 return Err(EditError::new(format!("`{path}` leads into a list of lists")));
             };
-            let found = if steps.len() == 1 { index_of(root, key, &part) } else { part.parse().ok() };
-            let index = found.filter(|index| list.is_some_and(|list| list.get(*index).is_some()));
-            let index = index.ok_or_else(|| EditError::new(nothing_called(root, key, &part)))?;
+            let inside = steps.len() > 1;
+            let found = list.and_then(|list| index_in(&items_of(list), &part));
+            let index = found.ok_or_else(|| {
+                let own = list.map(items_of).unwrap_or_default();
+                let known: Vec<String> = own.iter().filter_map(|item| called(item)).collect();
+                EditError::new(if inside {
+                    unknown(key, &part, &known)
+                } else {
+                    nothing_called(root, key, &part)
+                })
+            })?;
             at = at.and_then(|item| item.get(index));
             steps.push(PathStep::Item(index));
         } else {
@@ -64,19 +72,28 @@ pub(super) fn item_at<'a>(root: &'a Item, steps: &[PathStep]) -> Option<&'a Item
 
 /// The items of a list.
 pub(super) fn items<'a>(root: &'a Table, list: &str) -> Vec<&'a Item> {
-    let Some(list) = root.get(list) else { return vec![] };
+    root.get(list).map_or_else(Vec::new, items_of)
+}
+
+fn items_of(list: &Item) -> Vec<&Item> {
     (0..).map_while(|index| list.get(index)).collect()
+}
+
+fn called(item: &Item) -> Option<String> {
+    item.get("name").and_then(Item::as_str).map(composed)
 }
 
 /// The names in a list.
 pub(super) fn names(root: &Table, list: &str) -> impl Iterator<Item = String> {
-    items(root, list).into_iter().filter_map(|item| item.get("name")?.as_str().map(composed))
+    items(root, list).into_iter().filter_map(called)
 }
 
 /// Index of the item of a list with that name or number.
 fn index_of(root: &Table, list: &str, name: &str) -> Option<usize> {
-    let items = items(root, list);
-    let called = |item: &Item| item.get("name").and_then(Item::as_str).map(composed);
+    index_in(&items(root, list), name)
+}
+
+fn index_in(items: &[&Item], name: &str) -> Option<usize> {
     let named = items.iter().position(|item| called(item).as_deref() == Some(name));
     named.or_else(|| name.parse().ok().filter(|index| *index < items.len()))
 }
@@ -110,6 +127,10 @@ pub(super) fn nothing_called(root: &Table, list: &str, name: &str) -> String {
     if list == "robots" {
         known.extend(items(root, "groups").into_iter().flat_map(|group| made_by(group).take(1000)));
     }
+    unknown(list, name, &known)
+}
+
+fn unknown(list: &str, name: &str, known: &[String]) -> String {
     let hint = instead_of(name, known.iter().map(String::as_str));
     format!("no item of `{list}` is called `{name}`{hint}")
 }

@@ -11,6 +11,12 @@ pub(super) fn rename(root: &mut Table, old: &str, new: &str) {
             item.get_mut(key).into_iter().for_each(|item| exchange(item, old, new));
         });
     }
+    for_every_item(root, "robots", |robot| {
+        let leaders = robot.get_mut("leaders");
+        for_every_one(leaders, |leader| {
+            leader.get_mut("name").into_iter().for_each(|item| exchange(item, old, new));
+        });
+    });
     for_every_item(root, "groups", |group| {
         let members = group.get_mut("members").and_then(Item::as_table_like_mut);
         for (_, member) in members.into_iter().flat_map(toml_edit::TableLike::iter_mut) {
@@ -61,11 +67,21 @@ fn in_path(text: &str, old: &str, new: &str) -> Option<String> {
     let (path, value) = text.split_once('=')?;
     let mut parts = path.splitn(3, '.');
     let (list, name, rest) = (parts.next()?, parts.next()?, parts.next()?);
-    (list.trim() == "robots" && name.trim() == old).then(|| format!("robots.{new}.{rest}={value}"))
+    let mut inside = rest.splitn(3, '.');
+    let leader = inside.next().filter(|key| key.trim() == "leaders").and(inside.next());
+    let led = leader.filter(|leader| leader.trim() == old).and(inside.next());
+    let own = name.trim() == old;
+    let name = if own { new } else { name };
+    let rest = led.map_or_else(|| rest.to_owned(), |key| format!("leaders.{new}.{key}"));
+    (list.trim() == "robots" && (own || led.is_some())).then(|| format!("robots.{name}.{rest}={value}"))
 }
 
 fn for_every_item(root: &mut Table, list: &str, work: impl Fn(&mut Item)) {
-    let Some(list) = root.get_mut(list) else { return };
+    for_every_one(root.get_mut(list), work);
+}
+
+fn for_every_one(list: Option<&mut Item>, work: impl Fn(&mut Item)) {
+    let Some(list) = list else { return };
     let mut index = 0;
     while let Some(item) = list.get_mut(index) {
         work(item);

@@ -9,6 +9,7 @@ mod expect;
 mod film;
 mod ground;
 mod law;
+mod leader;
 mod narrowing;
 mod path;
 mod prop;
@@ -27,6 +28,7 @@ pub use expect::Expect;
 pub use film::{Film, Plot, Shot};
 pub use ground::{Ground, Noise, Patch, Relief};
 pub use law::{Law, Observer, SwitchingKind};
+pub use leader::{Leader, Leaders};
 pub use narrowing::Narrowing;
 pub use path::{Path, SpeedProfile};
 pub use prop::{PropMotion, PropSpec};
@@ -176,10 +178,8 @@ impl Scene {
             );
             let Joining { law, observer, sensing, narrowing } = (**joins).clone();
             let follow = Follow {
-                leader: leader.clone(),
+                leaders: Leaders::one(leader.clone(), distance, bearing),
                 speed: 0.0,
-                distance,
-                bearing,
                 law,
                 observer,
                 sensing,
@@ -198,6 +198,13 @@ impl Scene {
     /// The robots that follow, by name, in their order.
     pub fn followers(&self) -> impl Iterator<Item = (&str, &Follow)> {
         self.robots.iter().filter_map(|robot| Some((&*robot.name, robot.role.follow()?)))
+    }
+
+    /// The edges of the formation at the start, in the order of their followers, those of one follower together: its name,
+    /// how it follows, and whom by this edge.
+    pub fn edges(&self) -> impl Iterator<Item = (&str, &Follow, &Leader)> {
+        self.followers()
+            .flat_map(|(name, follow)| follow.leaders.iter().map(move |leader| (name, follow, leader)))
     }
 
     /// What a run of this scene is judged by.

@@ -1,9 +1,9 @@
 //! Robots and their roles.
 
-use super::{Law, Narrowing, Observer, Path, Proximity, Safety, Sensing, Vehicle};
+use super::{Law, Leaders, Narrowing, Observer, Path, Proximity, Safety, Sensing, Vehicle};
 use crate::vehicle::written;
 use serde::{Serialize, Serializer};
-use vocabulary::{Limits, Pose, ScalarTrajectory};
+use vocabulary::{Limits, Pose};
 
 /// One robot.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -61,22 +61,19 @@ impl Role {
     }
 }
 
-/// An edge of the formation, seen from its follower.
+/// How a robot follows. Each of its leaders is an edge of the formation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Follow {
-    /// Name of the robot that is followed; it exists, and following never comes round in a circle.
-    pub leader: String,
+    /// Whom it follows, and where it keeps to each.
+    #[serde(flatten)]
+    pub leaders: Leaders,
     /// Speed at the start, m/s, within the vehicle's limits.
     pub speed: f64,
-    /// Wanted distance, m.
-    pub distance: ScalarTrajectory,
-    /// Wanted bearing, rad: direction to the follower seen from the leader's heading, left positive.
-    pub bearing: ScalarTrajectory,
     /// Control law.
     pub law: Law,
     /// Observer; used by the output-feedback law only.
     pub observer: Observer,
-    /// What it knows of its leader.
+    /// What it knows of its leaders.
     pub sensing: Sensing,
     /// Whether and how it files in where there is no room.
     #[serde(skip_serializing_if = "Narrowing::is_usual")]

@@ -109,6 +109,10 @@ fn slots(
 /// Who moves so that the places are filled by the least way; where there are more places than robots, of those at the end
 /// of the formation that one stays empty without which the way is least.
 fn moves(run: &Simulation, head: usize, robots: &[usize], slots: &[Slot]) -> Result<Vec<Move>, EventRecord> {
+    if robots.iter().any(|robot| run.fleet.has_several_leaders(*robot)) {
+        let refusal = Refusal::Several;
+        return Err(EventRecord { refusal, ..EventRecord::done(EventKind::Assign, head, None) });
+    }
     let poses = &run.plant.world().snapshot().robots;
     let front = poses[head].motion.pose;
     let places: Vec<[f64; 2]> = robots

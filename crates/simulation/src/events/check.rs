@@ -37,11 +37,14 @@ pub(super) fn refused(
         return because(Refusal::Failed);
     }
     let graph = run.formation.graph();
+    if run.fleet.has_several_leaders(robot) {
+        return because(Refusal::Several);
+    }
     if graph.comes_after(leader, robot) {
         return because(Refusal::Cycle);
     }
-    let mut up = std::iter::successors(Some(leader), |robot| graph.leader_of(*robot));
-    if up.any(|robot| !matches!(duty(robot), Duty::Drives)) {
+    let idle = (0..run.fleet.robots.len()).filter(|other| !matches!(duty(*other), Duty::Drives));
+    if idle.into_iter().any(|other| graph.comes_after(leader, other)) {
         return because(Refusal::Leaderless);
     }
     let robots = &run.plant.world().snapshot().robots;

@@ -95,8 +95,13 @@ fn succeed(
         let pose = robots[*robot].motion.pose;
         math::hypot(pose.x - place.x, pose.y - place.y)
     };
-    let able = followers.iter().copied().filter(|robot| run.events.drives(*robot));
-    let Some(next) = able.min_by(|a, b| away(a).total_cmp(&away(b))) else { return };
+    let able = |robot: &usize| run.events.drives(*robot) && !run.fleet.has_several_leaders(*robot);
+    let able = followers.iter().copied().filter(able);
+    let Some(next) = able.min_by(|a, b| away(a).total_cmp(&away(b))) else {
+        // Whoever has another leader beside it keeps no place by that one alone.
+        recover(run, followers, Lost { leader: failed, place: [0.0; 2], led: true }, Recovery::Wait, time);
+        return;
+    };
     let slot = run.formation.graph().slot_of(next);
     let [x, y] = slot.map_or([0.0; 2], |edge| place_of(run, edge, time));
     hand_over::lead(run, next, motion, time);
@@ -109,7 +114,9 @@ fn succeed(
 /// Those who followed the robot at `lost` follow somebody else, or wait.
 fn recover(run: &mut Simulation, followers: &[usize], lost: Lost, recovery: Recovery, time: f64) {
     let followers: Vec<usize> = followers.iter().copied().filter(|robot| run.events.drives(*robot)).collect();
-    let mut left = followers;
+    // Who keeps its place by several leaders has it by none of them alone.
+    let (several, mut left): (Vec<_>, Vec<_>) =
+        followers.into_iter().partition(|robot| run.fleet.has_several_leaders(*robot));
     let mut moves = vec![];
     if recovery == Recovery::Graft {
         left.retain(|robot| match graft(run, *robot, lost, time) {
@@ -145,7 +152,7 @@ fn recover(run: &mut Simulation, followers: &[usize], lost: Lost, recovery: Reco
     if !moves.is_empty() {
         hand_over::begin(run, moves, time);
     }
-    for robot in left {
+    for robot in several.into_iter().chain(left) {
         run.events.duties[robot] = Duty::Waits(Wait { since: time, tried: time, lost });
         stand(run, robot);
         run.events.tell(EventRecord::done(EventKind::Wait, robot, None));
@@ -232,7 +239,9 @@ fn promote(run: &Simulation, followers: &[usize], lost: Lost) -> Result<Vec<Move
         moves.push(Move { edge, leader, place: Some(place), estimate: None });
         place = run.formation.laws()[edge].set_point.clone();
         (leader, at) = (next, [pose.x, pose.y]);
-        behind = graph.followers_of(next).filter(|robot| run.events.drives(*robot)).collect();
+        // Who has several leaders follows those as before, wherever they go.
+        let moves_up = |robot: &usize| run.events.drives(*robot) && !run.fleet.has_several_leaders(*robot);
+        behind = graph.followers_of(next).filter(moves_up).collect();
     }
     Ok(moves)
 }
@@ -245,7 +254,7 @@ pub(super) fn retry(run: &mut Simulation, time: f64) {
         if time - wait.since > rules.patience {
             run.events.duties[robot] = Duty::Stays;
             run.events.tell(EventRecord::done(EventKind::GiveUp, robot, None));
-        } else if time - wait.tried >= rules.retry - 1e-9 {
+        } else if time - wait.tried >= rules.retry - 1e-9 && !run.fleet.has_several_leaders(robot) {
             run.events.duties[robot] = Duty::Waits(Wait { tried: time, ..wait });
             // It tells nothing new where it is refused again.
             let found = graft(run, robot, wait.lost, time).map(|step| vec![step]).ok();
@@ -265,7 +274,8 @@ pub(super) fn leave_behind(run: &mut Simulation, patience: f64, time: f64) {
     let mut left = vec![];
     for robot in 0..robots.len() {
         let graph = run.formation.graph();
-        let drives = graph.leader_of(robot).is_some_and(|leader| speed(leader) > BLOCKED[1]);
+        let mut leaders = graph.edges_of(robot).iter().map(|edge| run.formation.edges()[*edge].leader);
+        let drives = leaders.any(|leader| speed(leader) > BLOCKED[1]);
         let held = drives && speed(robot) < BLOCKED[0];
         let since = &mut run.events.held_up[robot];
         if !held {

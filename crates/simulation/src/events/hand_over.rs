@@ -230,9 +230,10 @@ pub(super) fn let_stand(run: &mut Simulation, robot: usize) {
 
 /// A robot follows nobody from now on; those who follow it take `motion` for its own.
 pub(super) fn set_alone(run: &mut Simulation, robot: usize, motion: Arc<dyn Trajectory>) {
-    if let Some(edge) = run.formation.graph().edge_of(robot) {
-        // An edge less makes no ring.
-        let _ = run.formation.rewire(&[(edge, None)]);
+    let own: Vec<_> = run.formation.graph().edges_of(robot).iter().map(|edge| (*edge, None)).collect();
+    if !own.is_empty() {
+        // Edges less make no ring.
+        let _ = run.formation.rewire(&own);
     }
     if let Some(edge) = run.formation.graph().slot_of(robot) {
         overtake(run, &[edge]);

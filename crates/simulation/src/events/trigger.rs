@@ -82,10 +82,11 @@ fn now(run: &Simulation, robot: usize, holds: &Holds) -> bool {
             math::hypot(motion.pose.x - x, motion.pose.y - y) <= within
         }
         Holds::ClearanceBelow(below) => clearance(run, robot).is_some_and(|clearance| clearance < below),
-        Holds::LostFor(_) => run.formation.graph().edge_of(robot).is_some_and(|edge| {
-            matches!(run.observations[edge].sight, TrackingState::Lost | TrackingState::Waiting)
+        Holds::LostFor(_) => run.formation.graph().edges_of(robot).iter().any(|edge| {
+            matches!(run.observations[*edge].sight, TrackingState::Lost | TrackingState::Waiting)
         }),
-        Holds::BlockedFor(_) => run.formation.graph().leader_of(robot).is_some_and(|leader| {
+        Holds::BlockedFor(_) => run.formation.graph().edges_of(robot).iter().any(|edge| {
+            let leader = run.formation.edges()[*edge].leader;
             let drives = snapshot.robots[leader].motion.speed > BLOCKED[1];
             drives && motion.speed.abs() < BLOCKED[0]
         }),

@@ -68,6 +68,10 @@ pub fn gains(scene: &Scene) -> Result<Vec<EdgeGain>, BuildError> {
     let mut all: Vec<EdgeGain> = Vec::new();
     for &index in formation.graph().evaluation_order() {
         let edge = formation.edges()[index];
+        if formation.graph().edges_of(edge.follower).len() > 1 {
+            all.push(EdgeGain::missing(index, NotLinear::SeveralLeaders));
+            continue;
+        }
         let Some((leader, chain)) = above[edge.leader].clone() else {
             all.push(EdgeGain::missing(index, NotLinear::NoSteadyMotion));
             continue;

@@ -83,6 +83,8 @@ pub struct Examiner {
     /// Lead robots that do not drive exactly as their path says: on wheels, or with a safety filter.
     chasing: Vec<bool>,
     wheels: Vec<bool>,
+    /// Robots with several leaders.
+    several: Vec<bool>,
     mode: TimeMode,
     period: f64,
     last: Vec<MotionInput>,
@@ -154,6 +156,7 @@ impl Examiner {
             closed: Vec::new(),
             chasing: chasing.collect(),
             wheels,
+            several: simulation.fleet().several_leaders(),
             mode: simulation.mode(),
             period: simulation.period(),
             last: Vec::new(),
@@ -216,12 +219,14 @@ impl Examiner {
     fn certificate(&self, index: usize, edge: Edge, stretch: &CertifiedStretch) -> Certificate {
         let witness = &stretch.witness;
         let wheels = |robot: usize| self.wheels.get(robot).copied().unwrap_or(false);
+        let several = self.several.get(edge.follower).copied().unwrap_or(false);
         let circumstances = Circumstances {
             held: (self.mode != TimeMode::Continuous).then_some(self.period),
             sampled_measurement: self.mode == TimeMode::Measured,
             measures: stretch.measures,
             custom: stretch.custom.is_some(),
             wheels: wheels(edge.leader) || wheels(edge.follower),
+            several_leaders: several,
             rough_leader: stretch.rough_leader,
         };
         let law = &witness.law;
@@ -234,7 +239,8 @@ impl Examiner {
             pair: Edge { leader: stretch.leader, ..edge },
             span: witness.span().unwrap_or_default(),
             findings: certify(witness, &circumstances),
-            constants: Constants::of(witness).filter(|_| !custom && law.kind == LawKind::OutputFeedback),
+            constants: Constants::of(witness)
+                .filter(|_| !custom && !several && law.kind == LawKind::OutputFeedback),
             final_error: stretch.final_error,
             smoothing: smoothed
                 .then(|| [0, 1].map(|i| formation::certificate::chain::residual(law, i, effect[i]))),

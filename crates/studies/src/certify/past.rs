@@ -26,6 +26,7 @@ pub fn so_far(
         custom: follow.law.custom().is_some(),
         measures: follow.sensing.kind != SensingKind::Truth,
         wheels: wheels(edge.leader) || wheels(edge.follower),
+        several_leaders: follow.leaders.are_several(),
         // A leader that follows, or has a filter, is told its commands period by period.
         rough_leader: first.filter(|_| held && !smooth),
     };
@@ -39,7 +40,7 @@ pub fn rows(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) 
 }
 
 fn witness(records: &[&StepRecord], index: usize, edge: Edge, follow: &Follow) -> Witness {
-    let law = edge_law(follow);
+    let law = edge_law(follow, &follow.leaders.first, [0.0; 2]);
     let mut witness = Witness::new(law.law, law.observer).keeping();
     let observes = law.observes();
     let mut before: Option<(f64, Motion, [f64; 2])> = None;

@@ -39,7 +39,8 @@ pub struct ReachRay {
     pub end: Option<Infeasible>,
 }
 
-/// The set points that can be held, of every edge; leaders that follow are taken to hold their own.
+/// The set points that can be held, of every edge whose follower has one leader; leaders that follow are taken to hold their
+/// own, those with several the one behind their first.
 ///
 /// # Errors
 /// [`BuildError`] where the scene cannot run.
@@ -56,6 +57,10 @@ pub fn reach(scene: &Scene) -> Result<Vec<Reach>, BuildError> {
     let mut all: Vec<Option<Reach>> = vec![None; formation.edges().len()];
     for &index in formation.graph().evaluation_order() {
         let (edge, law) = (formation.edges()[index], &formation.laws()[index]);
+        let several = formation.graph().edges_of(edge.follower);
+        if several[0] != index {
+            continue;
+        }
         let path = &paths[edge.leader];
         let own: Vec<MotionInput> = path
             .iter()
@@ -65,6 +70,10 @@ pub fn reach(scene: &Scene) -> Result<Vec<Reach>, BuildError> {
                 held(place([distance, bearing - behind(&law.law.heading, leader)]), leader)
             })
             .collect();
+        if several.len() > 1 {
+            paths[edge.follower] = own;
+            continue;
+        }
         let value = law.set_point.at(0.0).value;
         let far = (3.0 * value[0]).max(4.0);
         let distance_min = law.law.distance_min;
@@ -92,7 +101,8 @@ pub fn reach(scene: &Scene) -> Result<Vec<Reach>, BuildError> {
 /// Whether a scene's set points move, so that one of them does not stand for all.
 pub fn moving(scene: &Scene) -> bool {
     let still = |channel: &ScalarTrajectory| matches!(channel, ScalarTrajectory::Constant(_));
-    scene.followers().any(|(_, follow)| !still(&follow.distance) || !still(&follow.bearing))
+    let moves = |wanted: &Option<ScalarTrajectory>| wanted.as_ref().is_some_and(|wanted| !still(wanted));
+    scene.edges().any(|(_, _, leader)| moves(&leader.distance) || moves(&leader.bearing))
 }
 
 fn place([distance, bearing]: [f64; 2]) -> [f64; 2] {

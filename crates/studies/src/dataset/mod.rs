@@ -16,6 +16,7 @@ use perception::imaging::Optics;
 use perception::sensors::{CameraSettings, Sensor, SensorConfig, SensorKind};
 use scene::Scene;
 use serde_json::{Value, json};
+use std::collections::HashSet;
 use std::path::PathBuf;
 use timeline::Timeline;
 use vocabulary::{CameraRenderer, Edge, FleetInfo, Region, Word, words};
@@ -217,7 +218,7 @@ impl DatasetExport {
     }
 }
 
-/// The edges of the followers that are named; all if none is.
+/// The edges of the followers that are named, one each; all if none is.
 ///
 /// # Errors
 /// [`Error::Usage`] where nobody follows, or no follower is called so.
@@ -234,7 +235,11 @@ pub fn followed_edges(fleet: &FleetInfo, names: &[String]) -> Result<Vec<Edge>, 
         )));
     }
     let wanted = |edge: &&Edge| names.is_empty() || names.iter().any(|name| name == follower(edge));
-    Ok(fleet.edges.iter().filter(wanted).copied().collect())
+    let mut edges: Vec<Edge> = fleet.edges.iter().filter(wanted).copied().collect();
+    // A camera looks at one leader: of several at the first.
+    let mut seen = HashSet::new();
+    edges.retain(|edge| seen.insert(edge.follower));
+    Ok(edges)
 }
 
 /// Tilt that is expected of bodies on springs or uneven ground, standard deviation, rad; as for cameras that steer.

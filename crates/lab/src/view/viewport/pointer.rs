@@ -91,7 +91,7 @@ impl Viewport {
             }
         }
         if response.drag_stopped() {
-            self.end_drag(out);
+            self.end_drag(ui, out);
         }
         self.wheel(&frame, fingers.or(pointer).map(pixel));
         self.clicks(&frame, pointer.map(pixel), out);
@@ -151,7 +151,7 @@ impl Viewport {
         }
     }
 
-    fn end_drag(&mut self, out: &mut Vec<Action>) {
+    fn end_drag(&mut self, ui: &Ui, out: &mut Vec<Action>) {
         match self.drag.take() {
             Some(Drag::SetPoint(edge)) => {
                 out.push(Action::Release);
@@ -159,7 +159,8 @@ impl Viewport {
             }
             Some(Drag::Connect(follower)) => {
                 if let Some(leader) = self.pointer.robot.filter(|leader| *leader != follower) {
-                    out.push(Action::Connect { leader, follower });
+                    let adds = ui.input(|input| input.modifiers.shift);
+                    out.push(Action::Connect { leader, follower, adds });
                 }
             }
             _ => {}
@@ -246,6 +247,10 @@ fn dragged(frame: &PointerFrame<'_>, edge: usize, place: [f64; 2]) -> Option<Act
     };
     let distance = distance.max(least.max(0.1));
     let [now_distance, now_bearing] = app_state.set_point(edge)?;
+    // What is left free stays as it is.
+    let free = app_state.fleet().map_or([false; 2], |fleet| fleet.free(edge));
+    let distance = if free[0] { now_distance } else { distance };
+    let bearing = if free[1] { now_bearing } else { bearing };
     if (distance - now_distance).abs() < 1e-9 && wrap(bearing - now_bearing).abs() < 1e-9 {
         return None;
     }

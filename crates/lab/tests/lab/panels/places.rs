@@ -51,7 +51,7 @@ fn a_robot_dropped_on_another_follows_it() {
         let connects: Vec<_> =
             actions.iter().filter(|action| matches!(action, Action::Connect { .. })).collect();
         if drop == to {
-            assert_eq!(connects, [&Action::Connect { leader: 1, follower: 2 }]);
+            assert_eq!(connects, [&Action::Connect { leader: 1, follower: 2, adds: false }]);
         } else {
             assert!(connects.is_empty(), "nobody follows himself");
         }

@@ -11,7 +11,7 @@ use crate::gpu::passes::decal::{DecalForm, DecalLayer, DecalVertex};
 use crate::ground::floor::Floor;
 use crate::ground::projection::{Eye, ProjectionTarget, project};
 use crate::ground::simplify::thinned;
-use crate::ground::trail::{RIBBON, Trail, set_points};
+use crate::ground::trail::{RIBBON, Trail, free_places, set_points};
 use crate::palette::{self, Rgb};
 use crate::picture_context::PictureContext;
 use glam::{DVec2, DVec3};
@@ -25,6 +25,8 @@ const WIDEST: f64 = 6.0;
 const RIBBON_HALF: f64 = 0.03;
 /// Radius of the ring at a set point, m.
 pub(crate) const RING: f64 = 0.25;
+/// How far to either side of a follower the line is drawn on which it shall be, m.
+const ARC: f64 = 1.2;
 /// Position errors above this are shown by an arrow, m.
 const ARROW_ABOVE: f64 = 0.05;
 
@@ -337,18 +339,37 @@ impl DecalBuilder<'_> {
 
     fn set_points(&mut self, context: &PictureContext<'_>) {
         let goals = set_points(context.fleet, context.record);
-        for (edge, goal) in context.fleet.edges.iter().zip(goals) {
+        for (index, (edge, goal)) in context.fleet.edges.iter().zip(goals).enumerate() {
             let Some(goal) = goal.map(DVec2::from_array) else { continue };
             let colour = context.colours[edge.follower];
+            if context.fleet.free(index) != [false; 2] {
+                self.free_places(context, index, goal, colour);
+                continue;
+            }
             let reach = RING * context.size;
             self.disc(goal, reach, DecalForm::Ring(0.0), colour, 0.16 * context.detail);
             self.ring(goal, reach, colour, 0.35 + 0.6 * context.detail);
         }
     }
 
+    /// The part near `goal` of all places that a set point allows of which a part is left free: an arc around the leader, or
+    /// a ray from it.
+    fn free_places(&mut self, context: &PictureContext<'_>, edge: usize, goal: DVec2, colour: Rgb) {
+        let Some(places) = free_places(context.fleet, context.record, edge) else { return };
+        let strength = (0.35 + 0.6 * context.detail) * 0.9;
+        let reach = ARC * context.size;
+        let fade = |place: DVec2| ((1.0 - place.distance(goal) / reach) / 0.4).clamp(0.0, 1.0) as f32;
+        let places = places.into_iter().map(DVec2::from_array);
+        let near: Vec<_> = places.map(|place| (place, strength * fade(place))).collect();
+        for part in near.split(|(_, alpha)| *alpha <= 0.0).filter(|part| part.len() > 1) {
+            self.band(part, 0.02 * context.size, 1.2, 0.0, colour);
+        }
+    }
+
     fn errors(&mut self, context: &PictureContext<'_>) {
         let goals = set_points(context.fleet, context.record);
-        for (edge, goal) in context.fleet.edges.iter().zip(goals) {
+        for (index, (edge, goal)) in context.fleet.edges.iter().zip(goals).enumerate() {
+            let free = context.fleet.free(index) != [false; 2];
             let robot = context.record.snapshot.robots.get(edge.follower);
             let (Some(goal), Some(robot)) = (goal.map(DVec2::from_array), robot) else { continue };
             let from = flat(&robot.motion.pose);
@@ -357,7 +378,9 @@ impl DecalBuilder<'_> {
                 .clamp(0.0, 1.0) as f32;
             if strength > 0.0 {
                 let colour = context.colours[edge.follower];
-                self.ring(goal, RING * context.size, colour, 0.55 * strength * context.detail);
+                if !free {
+                    self.ring(goal, RING * context.size, colour, 0.55 * strength * context.detail);
+                }
                 let alpha = strength * context.detail.max(0.3);
                 let pixel = self.stage_scale * self.pixel(goal);
                 // A dark rim tells it from a shell of the same colour.
