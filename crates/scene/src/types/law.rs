@@ -83,11 +83,6 @@ settings! {
 }
 
 impl Law {
-    /// How many leaders it looks at.
-    pub fn leaders(&self) -> usize {
-        self.custom().map_or(1, |law| law.declaration().leaders)
-    }
-
     /// The custom law that takes the place of the built-in ones, if one does.
     pub fn custom(&self) -> Option<&WrittenLaw> {
         self.text.as_ref().or(self.file.as_ref())
