@@ -151,9 +151,11 @@ impl Set {
 fn is_fixed(path: &[&str]) -> bool {
     let fixed = |marks: Option<&[Mark]>| marks.is_some_and(|marks| !marks.contains(&Mark::Live));
     match path {
-        ["robots" | "groups"] | ["robots" | "groups", _] => true,
+        ["robots" | "groups"]
+        | ["robots" | "groups", _]
+        | ["robots", _, "leaders"]
+        | ["robots", _, "leaders", _] => true,
         ["groups", _, "members", _, key, ..] => fixed(MemberKeys::marks(key)),
-        ["robots", _, "leaders"] | ["robots", _, "leaders", _] => true,
         ["robots", _, "leaders", _, key, ..] => fixed(LeaderKeys::marks(key)),
         ["robots", _, key, ..] => fixed(RobotKeys::marks(key)),
         ["groups", _, key, ..] => fixed(GroupKeys::marks(key)),
