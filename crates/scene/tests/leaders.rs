@@ -78,7 +78,7 @@ fn what_is_wrong_is_said_once_and_where_it_is() {
             "`distance` falls to 0.01 m, below the law's",
         ),
         (two(bob, r#"{ name = "cy", bearing = "900 deg" }"#), ":23:", "`bearing` must be an angle"),
-        (two(bob, r#"{ distance = 1.0 }"#), ":23:", "`name` is missing"),
+        (two(bob, "{ distance = 1.0 }"), ":23:", "`name` is missing"),
         (two(bob, r#"{ name = "cy", distance = 1.0, spacing = 1.0 }"#), ":23:", "unknown key `spacing`"),
         (format!("leaders = [{bob}]"), ":23:", "`leaders` must be a list of 2 to 4 values"),
         (format!("{TWO}\nleader = \"bob\""), ":24:", "leave out this `leader`"),
