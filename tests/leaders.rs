@@ -253,12 +253,8 @@ fn the_theorems_are_about_one_leader() {
     assert_eq!(all.len(), 4);
     for certificate in &all {
         let several = certificate.edge >= 2;
-        let words: Vec<String> = certificate
-            .findings
-            .iter()
-            .flat_map(|finding| &finding.unmet)
-            .map(Premise::words)
-            .collect();
+        let words: Vec<String> =
+            certificate.findings.iter().flat_map(|finding| &finding.unmet).map(Premise::words).collect();
         let told = words.iter().any(|words| words.starts_with("the theorems are about one leader"));
         assert_eq!(told, several, "{words:?}");
         assert!(certificate.unbroken() && (!several || certificate.constants.is_none()));

@@ -139,7 +139,7 @@ fn remarks(edit: &LawEdit) -> Vec<(String, bool)> {
         all.push((format!("and {more} more"), true));
     }
     all.extend(
-        edit.refusal.iter().flat_map(|refusal| refusal.lines().next()).map(|line| (line.to_owned(), true)),
+        edit.refusal.iter().filter_map(|refusal| refusal.lines().next()).map(|line| (line.to_owned(), true)),
     );
     if all.is_empty() {
         all.push(("Takes hold as you type".to_owned(), false));
