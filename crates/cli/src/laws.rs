@@ -297,13 +297,16 @@ fn tell_end(law: &WrittenLaw, args: &TestArgs, end: &LoopEnd, stable: bool) {
     if law.declaration().knows == Knowledge::Output {
         say("rates are taken as true; in a run the built-in observer estimates them");
     }
-    let Some(poles) = &end.poles else {
-        return say("the follower does not settle within a minute");
-    };
     for (index, [distance, bearing]) in end.errors.iter().enumerate() {
         let of = if end.errors.len() > 1 { format!(" to leader {}", index + 1) } else { String::new() };
-        say(&format!("settles at an error of {:.3} mm, {:.4}°{of}", 1e3 * distance, bearing.to_degrees()));
+        let [distance, bearing] = [rounded(1e3 * distance, 3), rounded(bearing.to_degrees(), 4)];
+        say(&format!("after a minute or sooner: error {distance} mm, {bearing}°{of}"));
     }
+    let Some(poles) = &end.poles else {
+        let moved = rounded(1e3 * end.moved, 3);
+        let text = "it does not come to rest, so there is nothing to linearise about";
+        return say(&format!("by then it still moves by {moved} mm, mrad or mm/s within a second: {text}"));
+    };
     say("\npole, 1/s                 damping  time constant");
     for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
         say(&line(pole));
@@ -315,6 +318,12 @@ fn tell_end(law: &WrittenLaw, args: &TestArgs, end: &LoopEnd, stable: bool) {
         say(&format!("nothing depends on {}: without a pole", apart.join(", ")));
     }
     say(if stable { "stable" } else { "not stable" });
+}
+
+/// A number with so many decimals, and no sign before zero.
+fn rounded(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    if text.chars().all(|c| "-0.".contains(c)) { text.replace('-', "") } else { text }
 }
 
 fn line(pole: &Pole) -> String {
@@ -330,7 +339,7 @@ fn end_json(end: &LoopEnd, stable: bool) -> Value {
     let poles = end.poles.as_ref();
     let poles = poles.map(|poles| poles.iter().map(|pole| [pole.re, pole.im]).collect::<Vec<_>>());
     json!({
-        "settles": poles.is_some(), "stable": stable, "errors": end.errors, "speed": end.speed,
+        "settles": poles.is_some(), "moved": end.moved, "stable": stable, "errors": end.errors, "speed": end.speed,
         "acceleration": end.command.acceleration, "turn_rate": end.command.turn_rate, "poles": poles,
     })
 }

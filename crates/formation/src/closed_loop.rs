@@ -36,6 +36,8 @@ pub struct LoopEnd {
     pub command: Command,
     /// The follower's speed, m/s.
     pub speed: f64,
+    /// How far pose and speed still moved in the last second, m, rad and m/s.
+    pub moved: f64,
     /// Poles, 1/s, the slowest first; `None` where the follower does not settle.
     pub poles: Option<Vec<Pole>>,
     /// Memory that nothing else depends on, by its index: its pole is left out.
@@ -85,11 +87,11 @@ pub fn close(law: &dyn CustomLaw, parameters: &[f64], leaders: &SteadyLeaders) -
     let mut state = closed.start()?;
     let still = (STILL / leaders.period).ceil() as usize;
     let longest = (LONGEST / leaders.period).ceil() as usize;
-    let mut settled = false;
+    let (mut settled, mut moved) = (false, 0.0_f64);
     let mut command = Command::default();
     for _ in 0..longest / still {
         let before = state.clone();
-        let mut moved: f64 = 0.0;
+        moved = 0.0;
         for _ in 0..still {
             (state, command) = closed.next(&state)?;
             let change = state.iter().zip(&before).take(BODY).map(|(now, before)| (now - before).abs());
@@ -102,7 +104,7 @@ pub fn close(law: &dyn CustomLaw, parameters: &[f64], leaders: &SteadyLeaders) -
     }
     let errors = (0..closed.motions.len()).map(|k| closed.error(k, &state)).collect();
     let (poles, apart) = if settled { closed.poles(&state)? } else { (None, vec![]) };
-    Ok(LoopEnd { errors, command, speed: state[3], poles, apart })
+    Ok(LoopEnd { errors, command, speed: state[3], moved, poles, apart })
 }
 
 /// How the leaders of a rigid frame move.
