@@ -150,7 +150,7 @@ pub const INPUTS: [(InputKind, &str, Unit, &str); 23] = [
     ),
     (K::LeaderSpeed, "leader.speed", Unit::new(1, -1), "the leader's speed"),
     (K::LeaderAcceleration, "leader.acceleration", Unit::new(1, -2), "the leader's acceleration"),
-    (K::LeaderTurnRate, "leader.turn_rate", Unit::new(0, -1), "the leader's turn rate"),
+    (K::LeaderTurnRate, "leader.turn_rate", Unit::new(0, -1).angular(), "the leader's turn rate"),
     (
         K::LeaderTurnAcceleration,
         "leader.turn_acceleration",

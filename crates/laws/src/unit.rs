@@ -166,9 +166,10 @@ impl UnitReader<'_> {
         let Some((_, unit, scale)) = NAMES.iter().find(|(known, ..)| *known == name) else {
             let names = NAMES.map(|(name, ..)| name).join(", ");
             let found = if name.is_empty() { self.rest } else { name };
-            return Err(match found {
+            let end = found.char_indices().nth(20).map_or(found.len(), |(end, _)| end);
+            return Err(match &found[..end] {
                 "" => format!("a unit is missing; there are {names}, and `-` for a number"),
-                _ => format!("there is no unit `{found}`; there are {names}, and `-` for a number"),
+                found => format!("there is no unit `{found}`; there are {names}, and `-` for a number"),
             });
         };
         self.rest = rest;

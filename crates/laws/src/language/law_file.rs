@@ -206,3 +206,25 @@ fn finite_command(law: &CheckedLaw, registers: &[f64]) -> Option<Command> {
     let [acceleration, turn_rate] = law.command.map(|register| registers[usize::from(register)]);
     (acceleration.is_finite() && turn_rate.is_finite()).then_some(Command { acceleration, turn_rate })
 }
+
+#[cfg(test)]
+impl super::interpreter::Watch for u64 {
+    fn before(&mut self, _: usize, _: &super::code::Instruction, _: f64, _: &[f64]) {
+        *self += 1;
+    }
+}
+
+#[cfg(test)]
+impl LawFile {
+    /// How many instructions of a sample give a value.
+    pub(super) fn executed(&self, input: &Input<'_>) -> u64 {
+        let code = &self.law.step;
+        let mut registers = [0.0; 512];
+        let parameters: Vec<f64> =
+            self.law.declaration.parameters.iter().map(|parameter| parameter.default).collect();
+        code.fill(&mut registers, input, &parameters, &vec![0.0; code.memory]);
+        let mut count = 0;
+        run(code, &mut registers, input.noise, &mut count);
+        count
+    }
+}

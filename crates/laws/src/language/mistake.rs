@@ -34,7 +34,9 @@ impl MistakeList {
     /// Notes one; the second at the same place is a consequence of the first.
     pub(super) fn add(&mut self, at: Stretch, message: impl Into<String>) {
         if !self.found.iter().any(|(known, _)| known.from == at.from) {
-            self.found.push((at, message.into()));
+            // What is quoted may hold anything.
+            let message = message.into().replace(char::is_control, "\u{fffd}");
+            self.found.push((at, message));
         }
     }
 
@@ -44,7 +46,7 @@ impl MistakeList {
 
     /// Whether so many have been found that no more are worth looking for.
     pub(super) fn is_full(&self) -> bool {
-        self.found.len() > 10 * MISTAKES_MAX
+        self.found.len() > 3 * MISTAKES_MAX
     }
 
     /// The first of them, in the order of the text.

@@ -680,6 +680,19 @@ fn what_cannot_be_read_is_said() {
             "let b = 2k",
             "1:9-1:11 a number and a name need a sign between them, such as `2 * k`; a unit stands in brackets, `2 [k]`",
         ),
+        (
+            "let b = 1 [k\u{1}]",
+            "1:11-1:15 there is no unit `k`; there are m, s, rad, deg, °, km, cm, mm, min, ms, and `-` for a number",
+        ),
+        ("let b = [\u{1}]", "1:9-1:12 a unit stands behind a number: `1 [m]`"),
+        (
+            "let b = 1 [\u{1}]",
+            "1:11-1:14 there is no unit `\u{fffd}`; there are m, s, rad, deg, °, km, cm, mm, min, ms, and `-` for a number",
+        ),
+        (
+            "let bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb = 1",
+            "1:5-1:66 this name is too long: 60 characters are enough",
+        ),
         ("let b = 1e999", "1:9-1:14 this number is too large"),
         (
             "let b = 1 [kg]",
@@ -920,6 +933,55 @@ fn what_a_law_is_told_may_be_at_fault() {
     assert_eq!(fault, Err("1:12: what the law is told is not a number: `leader.distance`".to_owned()));
 }
 
+// The page.
+
+#[test]
+fn the_page_of_the_language_is_true() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/law-files.md");
+    let page = std::fs::read_to_string(path).expect("a page");
+    let mut table = String::new();
+    for (_, name, unit, help) in crate::INPUTS {
+        table = format!("{table}| `{name}` | {unit} | {help} |\n");
+    }
+    assert!(page.contains(&table), "the page should have this table:\n{table}");
+    let mut table = String::new();
+    for builtin in super::builtin::BUILTINS {
+        table = format!("{table}| `{}` | {} |\n", builtin.name, builtin.help);
+    }
+    assert!(page.contains(&table), "the page should have this table:\n{table}");
+    let mut table = String::new();
+    let mut counts = vec![];
+    for law in crate::SHIPPED_LAWS {
+        let compiled = compiled(law.text);
+        let name = law.name;
+        table = format!("{table}| [`{name}`](../laws/{name}.law) | {} |\n", compiled.declaration().title);
+        counts.push(compiled.instructions());
+    }
+    assert!(page.contains(&table), "the page should have this table:\n{table}");
+    counts.sort_unstable();
+    let [least, .., most, predictive] = counts[..] else { panic!("{counts:?}") };
+    let words = page.replace('\n', " ");
+    let count = format!("the shipped laws take {least} to {most}, `predictive` {predictive}.");
+    assert!(words.contains(&count), "the page should say: {count}");
+    let laws: Vec<&str> =
+        page.split("```law\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(!laws.is_empty());
+    for law in laws {
+        compiled(law);
+    }
+    let wrong = mistakes_of("\n\nlet e = wanted.distance - leader.bearing\nlet d = leader.distanse");
+    let shown = wrong.iter().map(|mistake| {
+        let (place, rest) = mistake.split_once('-').expect("a stretch");
+        format!("{place}: {}", rest.split_once(' ').expect("a message").1)
+    });
+    let at_fault = fault(
+        "\n\n\n\nlet e = (leader.distance / 4, 0)\nlet speed = own.speed - 0.75 [m/s]\nlet b = e.x / speed\ncommand = b * 1 [m/s^3], 0",
+    );
+    for line in shown.chain([at_fault]) {
+        assert!(page.lines().any(|there| there == line), "the page should show: {line}");
+    }
+}
+
 // Any text.
 
 /// Texts that are nearly laws: lines of the laws that ship, words and signs.
@@ -985,6 +1047,26 @@ fn nearly_a_law() -> impl Strategy<Value = String> {
     proptest::collection::vec(part, 0..60).prop_map(|parts| parts.concat())
 }
 
+/// Statements with branches and loops.
+fn statements() -> impl Strategy<Value = String> {
+    let plain = proptest::sample::select(vec![
+        "a = a + b * 2",
+        "b = sin(a) - b / 3",
+        "a = if a > b { sin(cos(a)) } else { b }",
+        "b = if a > b { 1 } else if b < 0 { tanh(a) } else { -b }",
+        "if a > 1 or not (b < a) { a = 1 }",
+        "a = noise(3)",
+    ]);
+    plain.prop_map(str::to_owned).prop_recursive(4, 24, 3, |inner| {
+        prop_oneof![
+            (inner.clone(), inner.clone()).prop_map(|(one, other)| format!("{one}\n{other}")),
+            (inner.clone(), inner.clone())
+                .prop_map(|(one, other)| format!("if a < b {{ {one} }} else {{ {other} }}")),
+            (1..6, inner).prop_map(|(count, inner)| format!("repeat {count} {{ {inner} }}")),
+        ]
+    })
+}
+
 proptest! {
     #[test]
     fn any_text_is_a_law_or_is_refused_in_words(text in prop_oneof![nearly_a_law(), ".{0,200}"]) {
@@ -999,6 +1081,13 @@ proptest! {
                 }
             }
         }
+    }
+
+    /// No sample executes more instructions than were counted, whatever its branches.
+    #[test]
+    fn the_count_is_never_passed(text in statements()) {
+        let law = compiled(&format!("let a = time / 1 [s]\nlet b = 1\n{text}\ncommand = 0, 0"));
+        prop_assert!(law.executed(&input(&leaders())) <= law.instructions());
     }
 
     /// A polynomial in x and y is what Rust makes of it, in the same order.

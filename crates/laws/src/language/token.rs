@@ -70,6 +70,9 @@ const SIGNS: [(&str, &str); 33] = [
 const JOINS: [&str; 16] =
     ["+", "-", "*", "/", "^", "<", ">", "<=", ">=", "==", "!=", "=", ",", "..", "&&", "||"];
 
+/// The longest name, in characters.
+const NAME_MAX: usize = 60;
+
 /// Splits a text into tokens, the last of which is [`TokenKind::End`].
 pub(super) fn tokens<'a>(text: LawText<'a>, mistakes: &mut MistakeList) -> Vec<Token<'a>> {
     let mut lexer = Lexer { text: text.as_str(), at: 0, open: vec![], tokens: vec![] };
@@ -131,7 +134,13 @@ impl<'a> Lexer<'a> {
             _ if first.is_whitespace() => self.at = one.to,
             _ if begins_name(first) => {
                 let length = rest.find(|c| !continues_name(c)).unwrap_or(rest.len());
-                self.push(TokenKind::Name(&rest[..length]), length);
+                let name = &rest[..length];
+                let end = name.char_indices().nth(NAME_MAX).map_or(length, |(end, _)| end);
+                if end < length {
+                    let at = Stretch { from: self.at, to: self.at + length };
+                    mistakes.add(at, format!("this name is too long: {NAME_MAX} characters are enough"));
+                }
+                self.push(TokenKind::Name(&name[..end]), length);
             }
             _ => {
                 if let Some((typed, meant)) = SIGNS.iter().find(|(typed, _)| rest.starts_with(typed)) {
