@@ -45,18 +45,19 @@ fn the_laws_of_the_paper_are_those_of_formation() {
                 0 => Heading::Leader,
                 _ => Heading::Path(PathFilter { length: 1.0, lag: 0.0 }),
             };
-            let mut pose = || {
-                Pose::new(draw.between(-4.0, 4.0), draw.between(-4.0, 4.0), draw.between(-3.2, 3.2))
-            };
+            let mut pose =
+                || Pose::new(draw.between(-4.0, 4.0), draw.between(-4.0, 4.0), draw.between(-3.2, 3.2));
             let [leader_pose, own_pose] = [pose(), pose()];
             let relative = Relative::between(leader_pose, own_pose);
             if relative.distance < 0.1 {
                 continue;
             }
             let mut pair = |size: f64| [draw.between(-size, size), draw.between(-size, size)];
-            let [gain, robust_gain, slope] = [pair(5.0), pair(5.0), pair(24.0)].map(|pair| pair.map(f64::abs));
+            let [gain, robust_gain, slope] =
+                [pair(5.0), pair(5.0), pair(24.0)].map(|pair| pair.map(f64::abs));
             let set_point = SetPoint { value: pair(3.0), rate: pair(1.0), acceleration: pair(1.0) };
-            let [told_rates, [speed, turn_rate], [acceleration, turn_acceleration]] = [pair(2.0), pair(1.5), pair(2.0)];
+            let [told_rates, [speed, turn_rate], [acceleration, turn_acceleration]] =
+                [pair(2.0), pair(1.5), pair(2.0)];
             let motion = MotionInput { speed, acceleration, turn_rate, turn_acceleration };
             let own_speed = draw.between(0.01, 1.6);
             let law = Law {
@@ -86,8 +87,14 @@ fn the_laws_of_the_paper_are_those_of_formation() {
                 Heading::Leader => ([turn_rate, turn_acceleration], 0.0),
                 Heading::Path(_) => ([0.0; 2], leader_pose.heading),
             };
-            let leader =
-                LeaderInput { relative: seen, rates, wanted: set_point, motion, frame, heading: leader_heading };
+            let leader = LeaderInput {
+                relative: seen,
+                rates,
+                wanted: set_point,
+                motion,
+                frame,
+                heading: leader_heading,
+            };
             let input = Input {
                 time: 0.0,
                 period: 0.01,
@@ -144,7 +151,8 @@ impl Robot {
             let way = (speed + acceleration * middle) * dt;
             let heading = self.pose.heading + turn_rate * dt / 2.0;
             let (sin, cos) = math::sin_cos(heading);
-            self.pose = Pose::new(self.pose.x + way * cos, self.pose.y + way * sin, heading + turn_rate * dt / 2.0);
+            self.pose =
+                Pose::new(self.pose.x + way * cos, self.pose.y + way * sin, heading + turn_rate * dt / 2.0);
         }
         self.motion.speed = Limits::PAPER.clamp_speed(speed + acceleration * h);
     }
@@ -166,7 +174,13 @@ fn told(leader: &Robot, own: &Robot, wanted: [f64; 2]) -> LeaderInput {
 }
 
 /// The errors [distance, bearing] to each leader after `duration` s behind leaders that drive in circles.
-fn driven(name: &str, leaders: &mut [Robot], own: &mut Robot, wanted: &[[f64; 2]], duration: f64) -> Vec<[f64; 2]> {
+fn driven(
+    name: &str,
+    leaders: &mut [Robot],
+    own: &mut Robot,
+    wanted: &[[f64; 2]],
+    duration: f64,
+) -> Vec<[f64; 2]> {
     let file = compiled(name);
     let parameters = parameters(&file, |_| None);
     let mut memory = vec![0.0; file.declaration().memory.len()];
@@ -176,9 +190,13 @@ fn driven(name: &str, leaders: &mut [Robot], own: &mut Robot, wanted: &[[f64; 2]
     for sample in 0..=(duration / period) as u64 {
         let tell: Vec<LeaderInput> =
             leaders.iter().zip(wanted).map(|(leader, wanted)| told(leader, own, *wanted)).collect();
-        errors = tell.iter().zip(wanted).map(|(leader, wanted)| {
-            [wanted[0] - leader.relative.distance, wrap(wanted[1] - leader.relative.bearing)]
-        }).collect();
+        errors = tell
+            .iter()
+            .zip(wanted)
+            .map(|(leader, wanted)| {
+                [wanted[0] - leader.relative.distance, wrap(wanted[1] - leader.relative.bearing)]
+            })
+            .collect();
         let input = Input {
             time: sample as f64 * period,
             period,
@@ -195,7 +213,9 @@ fn driven(name: &str, leaders: &mut [Robot], own: &mut Robot, wanted: &[[f64; 2]
         let Command { acceleration, turn_rate } = Limits::PAPER.saturate(asked, own.motion.speed);
         own.motion.acceleration = Limits::PAPER.admissible(acceleration, own.motion.speed);
         own.motion.turn_rate = turn_rate;
-        leaders.iter_mut().for_each(|leader| leader.drive(period));
+        for leader in leaders.iter_mut() {
+            leader.drive(period);
+        }
         own.drive(period);
     }
     errors

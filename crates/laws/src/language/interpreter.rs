@@ -5,6 +5,10 @@ use crate::noise::Noise;
 
 /// Looks on while code runs.
 pub(super) trait Watch {
+    /// An instruction is executed.
+    #[inline]
+    fn executed(&mut self) {}
+
     /// Instruction number `at` has put a value into its register; `registers` are those before.
     fn before(&mut self, at: usize, instruction: &Instruction, value: f64, registers: &[f64]);
 }
@@ -27,6 +31,7 @@ pub(super) fn run<const N: usize>(
     const { assert!(N.is_power_of_two()) };
     let mut at = 0;
     while let Some(instruction) = code.instructions.get(at) {
+        watch.executed();
         let Instruction { operation, to, a, b, c } = *instruction;
         let of = |register: u16| usize::from(register) & (N - 1);
         let [first, second] = [registers[of(a)], registers[of(b)]];

@@ -209,14 +209,16 @@ fn finite_command(law: &CheckedLaw, registers: &[f64]) -> Option<Command> {
 
 #[cfg(test)]
 impl super::interpreter::Watch for u64 {
-    fn before(&mut self, _: usize, _: &super::code::Instruction, _: f64, _: &[f64]) {
+    fn executed(&mut self) {
         *self += 1;
     }
+
+    fn before(&mut self, _: usize, _: &super::code::Instruction, _: f64, _: &[f64]) {}
 }
 
 #[cfg(test)]
 impl LawFile {
-    /// How many instructions of a sample give a value.
+    /// How many instructions a sample executes.
     pub(super) fn executed(&self, input: &Input<'_>) -> u64 {
         let code = &self.law.step;
         let mut registers = [0.0; 512];
