@@ -1286,6 +1286,20 @@ impl<'a> Checker<'a, '_> {
         if let Some(function) = syntax.functions.iter().find(|function| function.name == *name) {
             return self.written_out(function, arguments, at);
         }
+        let is_builtin = BUILTINS.iter().any(|builtin| builtin.name == *name);
+        let is_seen = self.scope[self.floor..].iter().any(|variable| variable.name == *name)
+            || self.memory.iter().any(|memory| memory.name == *name)
+            || syntax.parameters.iter().any(|parameter| parameter.name == *name);
+        if is_seen && !is_builtin {
+            return match self.named(name, call.at) {
+                Typed::Vector(_) => self.mistake(
+                    call.at,
+                    format!("`{name}` is a vector: its components are `{name}.x` and `{name}.y`"),
+                ),
+                _ => self
+                    .mistake(call.at, format!("`{name}` is no function: to multiply, write `{name} * (…)`")),
+            };
+        }
         let Some(builtin) = BUILTINS.iter().find(|builtin| builtin.name == *name) else {
             let known = BUILTINS.iter().map(|builtin| builtin.name);
             let meant = match names::called_here(name) {

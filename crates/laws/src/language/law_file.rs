@@ -58,6 +58,15 @@ impl LawFile {
     }
 }
 
+/// The same text is the same law.
+impl PartialEq for LawFile {
+    fn eq(&self, other: &Self) -> bool {
+        self.text == other.text
+    }
+}
+
+impl Eq for LawFile {}
+
 /// Something that is done with as few registers as will do: they have to be cleared.
 trait RegisterUse {
     type Outcome;

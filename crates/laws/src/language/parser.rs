@@ -351,6 +351,9 @@ impl<'a> Parser<'a, '_> {
         loop {
             if self.is_word("in") {
                 let from = self.here();
+                if let TokenKind::Unit(_) = self.kind() {
+                    return self.lost("a range is written `0.1 .. 20`");
+                }
                 let low = self.signed()?;
                 self.expect("..")?;
                 let high = self.signed()?;
@@ -793,6 +796,9 @@ impl<'a> Parser<'a, '_> {
                 return self.lost("braces stand behind `if`, `else`, `repeat` and `function f(x)`");
             }
             TokenKind::Unit(_) => return self.lost("a unit stands behind a number: `1 [m]`"),
+            TokenKind::Sign("/") => {
+                return self.lost("here should stand a value, not `/`; comments begin with `#`");
+            }
             _ => return self.lost(format!("here should stand a value, not {}", self.found())),
         };
         Ok(Expression { kind, at: self.since(from) })
