@@ -747,6 +747,7 @@ fn what_cannot_be_read_is_said() {
         ),
         ("leaders 5", "1:9-1:10 here should stand how many leaders there are, 1 to 4, not `5`"),
         ("leaders 1\nleaders 1", "2:1-2:8 the number of leaders is said twice"),
+        ("knows rates\nknows motion", "2:1-2:6 what the law knows is said twice"),
         ("knows everything", "1:7-1:17 here should stand `rates` or `motion`, not `everything`"),
         ("parameter k = 5", "1:11-1:12 a parameter has a range for its slider: `in 0.1 .. 20`"),
         ("parameter k = 5 in 6 .. 9", "1:15-1:16 5 is not in the range 6 .. 9"),
