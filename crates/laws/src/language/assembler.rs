@@ -287,10 +287,15 @@ impl Assembler {
 
 /// The value of an operation on constants. Where it is not finite, the law runs into it, if it gets there.
 fn folded(operation: Operation, sources: &[Operand]) -> Option<f64> {
+    if operation == Operation::Noise {
+        return None;
+    }
     let mut values = [0.0; 3];
     for (value, source) in values.iter_mut().zip(sources) {
         let Operand::Constant(constant) = source else { return None };
         *value = *constant;
     }
-    operation.evaluate(values, Some, || None).filter(|value| value.is_finite())
+    let [a, b, c] = values;
+    let value = operation.value(a, b, c);
+    value.is_finite().then_some(value)
 }

@@ -89,59 +89,55 @@ impl Operation {
         self >= O::Jump
     }
 
-    /// Hands to `value` what it makes of its sources; jumps and noise make nothing of them and are left to `other`. In this form
-    /// the interpreter has one branch for an operation.
+    /// What it makes of its sources; jumps and noise make nothing.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "the interpreter is one match over all operations")]
-    pub(super) fn evaluate<T>(
-        self,
-        [a, b, c]: [f64; 3],
-        value: impl FnOnce(f64) -> T,
-        other: impl FnOnce() -> T,
-    ) -> T {
+    pub(super) fn value(self, a: f64, b: f64, c: f64) -> f64 {
         match self {
-            O::Move => value(a),
-            O::Negate => value(-a),
-            O::Add => value(a + b),
-            O::Subtract => value(a - b),
-            O::Multiply => value(a * b),
-            O::Divide => value(a / b),
-            O::MultiplyAdd => value(a * b + c),
-            O::MultiplySubtract => value(a * b - c),
-            O::SubtractProduct => value(c - a * b),
-            O::Minimum => value(a.min(b)),
-            O::Maximum => value(a.max(b)),
-            O::Absolute => value(a.abs()),
-            O::Sign => value(sign(a)),
-            O::Root => value(a.sqrt()),
-            O::Floor => value(a.floor()),
-            O::Wrap => value(wrap(a)),
-            O::Sine => value(math::sin(a)),
-            O::Cosine => value(math::cos(a)),
-            O::Tangent => value(math::tan(a)),
-            O::Arcsine => value(math::asin(a)),
-            O::Arccosine => value(math::acos(a)),
-            O::Arctangent => value(math::atan(a)),
-            O::HyperbolicTangent => value(math::tanh(a)),
-            O::Exponential => value(math::exp(a)),
-            O::Logarithm => value(math::ln(a)),
-            O::Arctangent2 => value(math::atan2(a, b)),
-            O::Hypotenuse => value(math::hypot(a, b)),
-            O::Power => value(math::powf(a, b)),
-            O::Less => value(f64::from(u8::from(a < b))),
-            O::LessOrEqual => value(f64::from(u8::from(a <= b))),
-            O::Equal => value(f64::from(u8::from(a == b))),
-            O::NotEqual => value(f64::from(u8::from(a != b))),
+            O::Move => a,
+            O::Negate => -a,
+            O::Add => a + b,
+            O::Subtract => a - b,
+            O::Multiply => a * b,
+            O::Divide => a / b,
+            O::MultiplyAdd => a * b + c,
+            O::MultiplySubtract => a * b - c,
+            O::SubtractProduct => c - a * b,
+            O::Minimum => a.min(b),
+            O::Maximum => a.max(b),
+            O::Absolute => a.abs(),
+            // sign(0) is 0, unlike `f64::signum`.
+            O::Sign => {
+                if a == 0.0 {
+                    0.0
+                } else {
+                    a.signum()
+                }
+            }
+            O::Root => a.sqrt(),
+            O::Floor => a.floor(),
+            O::Wrap => wrap(a),
+            O::Sine => math::sin(a),
+            O::Cosine => math::cos(a),
+            O::Tangent => math::tan(a),
+            O::Arcsine => math::asin(a),
+            O::Arccosine => math::acos(a),
+            O::Arctangent => math::atan(a),
+            O::HyperbolicTangent => math::tanh(a),
+            O::Exponential => math::exp(a),
+            O::Logarithm => math::ln(a),
+            O::Arctangent2 => math::atan2(a, b),
+            O::Hypotenuse => math::hypot(a, b),
+            O::Power => math::powf(a, b),
+            O::Less => f64::from(u8::from(a < b)),
+            O::LessOrEqual => f64::from(u8::from(a <= b)),
+            O::Equal => f64::from(u8::from(a == b)),
+            O::NotEqual => f64::from(u8::from(a != b)),
             O::Noise | O::Jump | O::JumpUnless | O::JumpUnlessLess | O::JumpUnlessLessOrEqual | O::Again => {
-                other()
+                0.0
             }
         }
     }
-}
-
-/// sign(0) is 0, unlike [`f64::signum`].
-fn sign(x: f64) -> f64 {
-    if x == 0.0 { 0.0 } else { x.signum() }
 }
 
 /// One instruction; `a`, `b`, `c` and, but for jumps, `to` are registers.

@@ -34,16 +34,9 @@ pub(super) fn run<const N: usize>(
         watch.executed();
         let Instruction { operation, to, a, b, c } = *instruction;
         let of = |register: u16| usize::from(register) & (N - 1);
-        let [first, second, third] = [a, b, c].map(|source| registers[of(source)]);
-        let value = operation
-            .evaluate([first, second, third], Some, || (operation == O::Noise).then(|| normal(noise, first)));
-        if let Some(value) = value {
-            watch.before(at, instruction, value, registers);
-            registers[of(to)] = value;
-            at += 1;
-            continue;
-        }
+        let [first, second] = [registers[of(a)], registers[of(b)]];
         let passes = match operation {
+            O::Jump => false,
             O::JumpUnless => first != 0.0,
             O::JumpUnlessLess => first < second,
             O::JumpUnlessLessOrEqual => first <= second,
@@ -51,15 +44,19 @@ pub(super) fn run<const N: usize>(
                 registers[of(a)] = first + 1.0;
                 first + 1.0 > second
             }
-            _ => false,
+            O::Noise => {
+                let value = noise.normal(first as u64);
+                watch.before(at, instruction, value, registers);
+                registers[of(to)] = value;
+                true
+            }
+            _ => {
+                let value = operation.value(first, second, registers[of(c)]);
+                watch.before(at, instruction, value, registers);
+                registers[of(to)] = value;
+                true
+            }
         };
         at = if passes { at + 1 } else { usize::from(to) };
     }
-}
-
-/// Out of the way of the loop.
-#[cold]
-#[inline(never)]
-fn normal(noise: Noise, index: f64) -> f64 {
-    noise.normal(index as u64)
 }
