@@ -2,10 +2,13 @@
 
 use crate::Noise;
 use vocabulary::{math, wrap};
-use wasmi::{Caller, Engine, Error, Linker, StoreLimits, ValType};
+use wasmi::{Caller, Engine, Error, Linker, StoreLimits, TrapCode, ValType};
 
 /// The module name under which functions are imported: that of C's undefined functions.
 pub(super) const FROM: &str = "env";
+
+/// Instructions that a function counts for, about as long as it takes.
+const PRICE: u64 = 20;
 
 /// A function that a module may import; all return an `f64`.
 #[derive(Clone, Copy)]
@@ -64,14 +67,26 @@ pub(super) fn offered(engine: &Engine) -> Result<Linker<Host>, Error> {
     let mut linker = Linker::new(engine);
     for (name, offer) in OFFERED {
         match offer {
-            Offer::OfOne(function) => linker.func_wrap(FROM, name, move |x: f64| plain(function(x))),
-            Offer::OfTwo(function) => {
-                linker.func_wrap(FROM, name, move |x: f64, y: f64| plain(function(x, y)))
+            Offer::OfOne(function) => {
+                linker.func_wrap(FROM, name, move |mut caller: Caller<'_, Host>, x: f64| {
+                    paid(&mut caller).map(|()| plain(function(x)))
+                })
             }
-            Offer::Noise => linker.func_wrap(FROM, name, |caller: Caller<'_, Host>, index: u32| {
-                caller.data().noise.normal(u64::from(index))
+            Offer::OfTwo(function) => {
+                linker.func_wrap(FROM, name, move |mut caller: Caller<'_, Host>, x: f64, y: f64| {
+                    paid(&mut caller).map(|()| plain(function(x, y)))
+                })
+            }
+            Offer::Noise => linker.func_wrap(FROM, name, |mut caller: Caller<'_, Host>, index: u32| {
+                paid(&mut caller).map(|()| caller.data().noise.normal(u64::from(index)))
             }),
         }?;
     }
     Ok(linker)
+}
+
+/// Takes the price of a function; fails where there is too little fuel left.
+fn paid(caller: &mut Caller<'_, Host>) -> Result<(), Error> {
+    let left = caller.get_fuel()?.checked_sub(PRICE).ok_or(TrapCode::OutOfFuel)?;
+    caller.set_fuel(left)
 }

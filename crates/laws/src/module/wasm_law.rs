@@ -26,7 +26,7 @@ const TEXT_MAX: usize = 64_000;
 /// Numbers for which a module has room in its region.
 const REGION: usize = 1024;
 /// Instructions that a call may execute. A bound on time only: it is never recorded, for versions of wasmi count differently.
-const FUEL: u64 = 10_000_000;
+const FUEL: u64 = 5_000_000;
 /// Most calls within calls, and the bytes of their values.
 const STACK_MAX: [usize; 2] = [1000, 1 << 20];
 
