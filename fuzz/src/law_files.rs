@@ -35,7 +35,7 @@ pub fn law_file(data: &[u8]) {
 }
 
 /// A leader of which every number is `x`, or near it.
-fn told_of_leader(x: f64) -> LeaderInput {
+pub(crate) fn told_of_leader(x: f64) -> LeaderInput {
     LeaderInput {
         relative: Relative { distance: x, bearing: -x, view_angle: x / 2.0 },
         rates: [x, -x],
@@ -46,7 +46,8 @@ fn told_of_leader(x: f64) -> LeaderInput {
     }
 }
 
-fn drive(law: &LawFile, leaders: &[LeaderInput], told: f64, parameters: &[f64]) {
+/// Lets a law decide some samples, in each of which it gives finite numbers or says in words why it does not.
+pub(crate) fn drive(law: &dyn CustomLaw, leaders: &[LeaderInput], told: f64, parameters: &[f64]) {
     let declaration = law.declaration();
     let mut memory = vec![0.0; declaration.memory.len()];
     let mut shown = vec![0.0; declaration.shown.len()];

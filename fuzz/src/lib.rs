@@ -2,12 +2,14 @@
 //! not as it should be; `scripts/fuzz` runs them by the million, `tests/corpus.rs` on what was found before.
 
 mod law_files;
+mod law_modules;
 mod links;
 mod log;
 mod motion;
 mod scenes;
 
 pub use law_files::law_file;
+pub use law_modules::law_module;
 pub use links::links;
 pub use log::mcap_log;
 pub use motion::way_points;
@@ -17,7 +19,7 @@ pub use scenes::{csv_table, overrides, scene_text, storyboard};
 pub type Target = (&'static str, fn(&[u8]));
 
 /// All targets.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     ("scene_text", scene_text),
     ("overrides", overrides),
     ("csv_table", csv_table),
@@ -26,4 +28,5 @@ pub const TARGETS: [Target; 8] = [
     ("way_points", way_points),
     ("links", links),
     ("law_file", law_file),
+    ("law_module", law_module),
 ];

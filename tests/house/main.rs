@@ -102,7 +102,7 @@ const ARROWS: [(&str, &[&str]); 20] = [
 ];
 
 /// Heavy crates and the only members that may name them.
-const LEAVES: [(&str, &[&str]); 10] = [
+const LEAVES: [(&str, &[&str]); 11] = [
     ("wgpu", &["rendering", "lab"]),
     ("eframe", &["lab"]),
     ("parquet", &["recording"]),
@@ -113,6 +113,7 @@ const LEAVES: [(&str, &[&str]); 10] = [
     ("rapier3d-f64", &["world"]),
     ("resvg", &["report"]),
     ("svg2pdf", &["report"]),
+    ("wasmi", &["laws"]),
 ];
 
 #[test]

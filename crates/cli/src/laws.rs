@@ -1,4 +1,4 @@
-//! `echelon laws`: custom laws that come with the program, and what a law file is and does.
+//! `echelon laws`: custom laws that come with the program, and what a law file or a module is and does.
 
 use crate::Outcome;
 use crate::failure::Failure;
@@ -32,9 +32,9 @@ enum LawsCommand {
         #[arg(value_name = "NAME")]
         name: String,
     },
-    /// Say what is wrong with law files, or what they declare
+    /// Say what is wrong with law files and WebAssembly modules, or what they declare
     Check {
-        /// Law files, or names of laws that come with the program
+        /// Law files, modules, or names of laws that come with the program
         #[arg(value_name = "LAW", required = true)]
         laws: Vec<PathBuf>,
     },
@@ -50,7 +50,7 @@ enum LawsCommand {
 
 #[derive(Debug, Args)]
 struct TestArgs {
-    /// A law file, or the name of a law that comes with the program
+    /// A law file, a module, or the name of a law that comes with the program
     #[arg(value_name = "LAW")]
     law: PathBuf,
     /// Set a parameter, such as k=3
@@ -228,8 +228,10 @@ fn test(args: &TestArgs, as_json: bool) -> Outcome {
     let law = load_law(&args.law).map_err(|faults| Failure::Usage(faults.to_string()))?;
     let parameters = parameters(&law, &args.set)?;
     let leaders = leaders(&law, args)?;
-    let end = close(&*law.law(), &parameters, &leaders)
-        .map_err(|fault| Failure::Broken(format!("{}:{fault}", args.law.display())))?;
+    let end = close(&*law.law(), &parameters, &leaders).map_err(|fault| {
+        let mark = if fault.place.is_some() { ":" } else { ": " };
+        Failure::Broken(format!("{}{mark}{fault}", args.law.display()))
+    })?;
     let stable = end.poles.as_ref().is_some_and(|poles| poles.iter().all(|pole| pole.re < 0.0));
     if as_json {
         json(&end_json(&end, stable));

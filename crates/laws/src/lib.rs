@@ -10,6 +10,7 @@ mod custom_law;
 mod declaration;
 mod input;
 mod language;
+mod module;
 mod noise;
 mod shipped;
 mod unit;
@@ -18,6 +19,9 @@ pub use custom_law::{CustomLaw, Fault, Place};
 pub use declaration::{Declaration, Knowledge, Parameter, Quantity, Scale};
 pub use input::{INPUTS, Input, InputKind, LEADERS_MAX, LeaderInput};
 pub use language::{LawFile, Mistake};
+#[cfg(feature = "wasm")]
+pub use module::WasmLaw;
+pub use module::{is_module, read_module};
 pub use noise::Noise;
 pub use shipped::{SHIPPED_LAWS, ShippedLaw, TEMPLATE, shipped};
 pub use unit::Unit;

@@ -49,6 +49,7 @@ mod tests {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../laws");
         let files = std::fs::read_dir(folder).expect("laws").flatten().map(|entry| entry.path());
         let mut names: Vec<String> = files
+            .filter(|path| path.extension().is_some_and(|ending| ending == "law"))
             .filter_map(|path| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()))
             .collect();
         names.sort();

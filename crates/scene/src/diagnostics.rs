@@ -29,9 +29,10 @@ impl Diagnostics {
         &self.0
     }
 
-    pub(crate) fn whole_file(path: &Path, message: String) -> Self {
+    pub(crate) fn whole_file(path: &Path, messages: impl IntoIterator<Item = String>) -> Self {
         let origin = path.display().to_string();
-        Self(vec![Diagnostic { origin, width: 1, message, ..Diagnostic::default() }])
+        let one = |message| Diagnostic { origin: origin.clone(), width: 1, message, ..Diagnostic::default() };
+        Self(messages.into_iter().map(one).collect())
     }
 }
 

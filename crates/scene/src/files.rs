@@ -1,4 +1,4 @@
-//! Reading text files that somebody named: one clear message for each way this can fail.
+//! Reading files that somebody named: one clear message for each way this can fail.
 
 use crate::text::{Form, Node, Reporter};
 use serde_json::{Value as Json, json};
@@ -11,8 +11,8 @@ use std::{
 /// Scenes are never this large; the bound limits memory and time.
 const MOST_BYTES: u64 = 10_000_000;
 
-/// The text of the file at `path`, or what is wrong with it.
-pub(crate) fn read_text(path: &Path) -> Result<String, String> {
+/// The bytes of the file at `path`, or what is wrong with it.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, String> {
     let file = File::open(path).map_err(|error| match error.kind() {
         ErrorKind::NotFound => "no such file".to_owned(),
         _ => format!("cannot be opened: {error}"),
@@ -31,6 +31,16 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     if bytes.len() as u64 > MOST_BYTES {
         return Err(too_large());
     }
+    Ok(bytes)
+}
+
+/// The text of the file at `path`, or what is wrong with it.
+pub(crate) fn read_text(path: &Path) -> Result<String, String> {
+    text_of(read_bytes(path)?)
+}
+
+/// Bytes of a file as text, or what is wrong with it.
+pub(crate) fn text_of(bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|error| {
         let line = error.as_bytes()[..error.utf8_error().valid_up_to()].split(|byte| *byte == b'\n').count();
         format!("is not UTF-8 text: line {line} holds bytes that are not characters")

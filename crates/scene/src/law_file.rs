@@ -1,19 +1,23 @@
-//! Custom laws in scenes: their files, their texts, and values of their parameters.
+//! Custom laws in scenes: their files, their texts, modules, and values of their parameters.
 
 use crate::Diagnostics;
-use crate::files::read_text;
+use crate::files::{read_bytes, text_of};
+use crate::packed::{Damage, unpack};
 use crate::text::{Form, Node, Reporter, Span, Value, form::Text, words::instead_of};
-use crate::types::{LawSource, WrittenLaw};
-use laws::{Declaration, LawFile, Mistake, Place, SHIPPED_LAWS, shipped};
+use crate::types::{LawSource, Written, WrittenLaw};
+use laws::{Declaration, LawFile, Mistake, Place, SHIPPED_LAWS, is_module, read_module, shipped};
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Most characters of a law that is written in a scene.
-pub(crate) const LAW_TEXT: usize = 100_000;
+const LAW_TEXT: usize = 100_000;
+/// Most characters of a packed module.
+const PACKED_MODULE: usize = 1_500_000;
 
 /// Keys of which the one that is set last says which law a follower has.
-pub(crate) const LAW_CHOICE: [&str; 3] = ["kind", "file", "text"];
+const LAW_CHOICE: [&str; 4] = ["kind", "file", "text", "module"];
 
 /// The keys of a table called `table` that lose their meaning where `key` is set.
 pub(crate) fn replaced_by(table: &str, key: &str) -> impl Iterator<Item = &'static str> {
@@ -26,6 +30,9 @@ pub(crate) struct LawFileForm;
 
 /// The text of a law.
 pub(crate) struct LawTextForm;
+
+/// A law that is a WebAssembly module, packed.
+pub(crate) struct LawModuleForm;
 
 /// Values of a law's parameters, by their names.
 pub(crate) struct ParametersForm;
@@ -40,11 +47,20 @@ impl Form for LawFileForm {
             return compiled(LawSource::Shipped(name.to_owned()), name.to_owned(), law.text, reporter)
                 .map(Some);
         }
-        match read_text(&path) {
-            Ok(text) => {
+        match read_bytes(&path) {
+            Ok(bytes) => {
                 reporter.files.push(path.clone());
-                compiled(LawSource::File(name.to_owned()), path.display().to_string(), &text, reporter)
-                    .map(Some)
+                let (source, origin) = (LawSource::File(name.to_owned()), path.display().to_string());
+                if is_module(&bytes) {
+                    let law = of_module(source, bytes);
+                    return law
+                        .map_err(|told| report_all(&told, &origin, node.span, reporter))
+                        .ok()
+                        .map(Some);
+                }
+                let text = text_of(bytes);
+                let text = text.map_err(|fault| report_all(&[fault], &origin, node.span, reporter)).ok()?;
+                compiled(source, origin, &text, reporter).map(Some)
             }
             Err(fault) => {
                 let known = SHIPPED_LAWS.iter().map(|law| law.name);
@@ -73,6 +89,37 @@ impl Form for LawTextForm {
     }
 }
 
+impl Form for LawModuleForm {
+    type Out = Option<WrittenLaw>;
+
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
+        let packed = Text(PACKED_MODULE).read(node, reporter)?;
+        match unpack(packed.trim()) {
+            Ok(bytes) if is_module(&bytes) => {
+                let law = of_module(LawSource::Scene, bytes);
+                law.map_err(|told| report_all(&told, "law.module", node.span, reporter)).ok().map(Some)
+            }
+            Ok(_) => {
+                reporter.report(node.span, "`module` unpacks to what is no WebAssembly module");
+                None
+            }
+            Err(damage) => {
+                let what = match damage {
+                    Damage::CutOff => "is cut off",
+                    Damage::Other(what) => what,
+                };
+                reporter
+                    .report(node.span, format!("`module` {what}: it is a module, packed; `file` names one"));
+                None
+            }
+        }
+    }
+
+    fn schema(&self) -> Json {
+        Text(PACKED_MODULE).schema()
+    }
+}
+
 /// The law of the file at `path`, or of that name among those that come with the program.
 ///
 /// # Errors
@@ -84,20 +131,38 @@ pub fn load_law(path: &Path) -> Result<WrittenLaw, Diagnostics> {
     let law = if let Some(law) = known {
         compiled(LawSource::Shipped(name.clone()), name, law.text, &mut reporter)
     } else {
-        let text = read_text(path).map_err(|fault| {
+        let whole = |messages| Diagnostics::whole_file(path, messages);
+        let bytes = read_bytes(path).map_err(|fault| {
             let known = SHIPPED_LAWS.iter().map(|law| law.name);
             let hint = if path.exists() { String::new() } else { instead_of(&name, known) };
-            Diagnostics::whole_file(path, fault + &hint)
+            whole(vec![fault + &hint])
         })?;
+        if is_module(&bytes) {
+            return of_module(LawSource::File(name), bytes).map_err(whole);
+        }
+        let text = text_of(bytes).map_err(|fault| whole(vec![fault]))?;
         compiled(LawSource::File(name.clone()), name, &text, &mut reporter)
     };
     law.ok_or_else(|| reporter.into_diagnostics())
 }
 
+/// The law of a module, or what is wrong with it.
+fn of_module(source: LawSource, bytes: Vec<u8>) -> Result<WrittenLaw, Vec<String>> {
+    let law = read_module(&bytes)?;
+    Ok(WrittenLaw::new(source, Written::Module(bytes.into()), law))
+}
+
+/// What is wrong with a law, reported where it is named at `span`; `origin` is the name of the file or key.
+fn report_all(mistakes: &[String], origin: &str, span: Span, reporter: &mut Reporter) {
+    for what in mistakes {
+        reporter.report(span, format!("{origin}: {what}"));
+    }
+}
+
 /// The law of a text, or `None` after reporting its mistakes where they stand.
 fn compiled(source: LawSource, origin: String, text: &str, reporter: &mut Reporter) -> Option<WrittenLaw> {
     match LawFile::compile(text) {
-        Ok(law) => Some(WrittenLaw::new(source, text, law)),
+        Ok(law) => Some(WrittenLaw::new(source, Written::Text(text.into()), Arc::new(law))),
         Err(mistakes) => {
             let number = reporter.add_source(origin, text);
             for Mistake { place, end, message } in mistakes {

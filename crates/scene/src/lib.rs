@@ -25,6 +25,7 @@ mod names;
 mod narrowing;
 mod outline;
 mod overrides;
+mod packed;
 mod path_form;
 mod patterns;
 mod prop_form;

@@ -28,7 +28,7 @@ pub(crate) fn load(path: &Path, overrides: &[Override]) -> Result<Loaded, Diagno
     if let Some(shipped) = named(path) {
         return parse(shipped.text, path, overrides);
     }
-    let text = read_text(path).map_err(|fault| Diagnostics::whole_file(path, fault + &suggestion(path)))?;
+    let text = read_text(path).map_err(|fault| Diagnostics::whole_file(path, [fault + &suggestion(path)]))?;
     parse(&text, path, overrides)
 }
 
@@ -36,7 +36,7 @@ pub(crate) fn load(path: &Path, overrides: &[Override]) -> Result<Loaded, Diagno
 pub(crate) fn parse(text: &str, path: &Path, overrides: &[Override]) -> Result<Loaded, Diagnostics> {
     if text.trim().is_empty() {
         let fault = "is empty: a scene needs at least `schema = 1`, a title and a robot";
-        return Err(Diagnostics::whole_file(path, fault.to_owned()));
+        return Err(Diagnostics::whole_file(path, [fault.to_owned()]));
     }
     let mut reporter = Reporter::new(path.parent().unwrap_or(Path::new("")));
     match check(text, path, overrides, &mut reporter) {

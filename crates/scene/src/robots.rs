@@ -55,7 +55,7 @@ impl Defaults {
             None if law.parameters.is_empty() => {}
             None => report(
                 &["parameters"],
-                "`parameters` are those of a custom law, which `file` or `text` names; the gains of a built-in law are \
+                "`parameters` are those of a custom law, which `file`, `text` or `module` names; the gains of a built-in law are \
                  keys of their own, such as `k`"
                     .to_owned(),
             ),
@@ -79,12 +79,15 @@ impl Defaults {
     /// A law as it was completed, where `own` and the scene choose different ones: what is said nearer to the robot counts,
     /// and so do parameters, which belong to a choice.
     fn chosen(&self, own: &LawPart, mut law: Law) -> Law {
-        let said = |part: &LawPart| part.kind.is_some() || part.file.is_some() || part.text.is_some();
+        let said = |part: &LawPart| {
+            part.kind.is_some() || part.file.is_some() || part.text.is_some() || part.module.is_some()
+        };
         let nearest = if said(own) { own } else { &self.law };
         let custom =
             |found: &Option<Found<Option<WrittenLaw>>>| found.as_ref().and_then(|found| found.value.clone());
-        law.text = custom(&nearest.text);
-        law.file = custom(&nearest.file).filter(|_| law.text.is_none());
+        law.module = custom(&nearest.module);
+        law.text = custom(&nearest.text).filter(|_| law.module.is_none());
+        law.file = custom(&nearest.file).filter(|_| law.module.is_none() && law.text.is_none());
         let values =
             |part: &LawPart| part.parameters.as_ref().map(|found| found.value.clone()).unwrap_or_default();
         law.parameters = if said(own) { values(own) } else { values(&self.law) };

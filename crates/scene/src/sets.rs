@@ -5,7 +5,7 @@ use crate::types::{
     LawPart, NarrowingPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart,
 };
 use crate::vehicle::applies;
-use crate::{Follow, Law, Robot, Role, Scene};
+use crate::{Follow, Law, LawSource, Robot, Role, Scene};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use vocabulary::ScalarTrajectory;
@@ -136,14 +136,19 @@ impl ParameterDifference {
     /// Of the keys that choose a law the one that chooses the second.
     fn note_law(&mut self, a: &Law, b: &Law, at: &str) {
         if (a.custom(), a.built_in()) != (b.custom(), b.built_in()) {
-            self.sets.push(match (&b.text, &b.file) {
-                (Some(law), _) => format!("{at}text={}", law.text()),
-                (None, Some(law)) if law.is_apart() => format!("{at}text={}", law.text()),
-                (None, Some(law)) => format!("{at}file={}", law.name()),
-                (None, None) => format!("{at}kind={}", written(&b.kind)),
+            self.sets.push(match b.custom() {
+                Some(law) => match law.source() {
+                    LawSource::Shipped(name) => format!("{at}file={name}"),
+                    LawSource::File(_) | LawSource::Scene => {
+                        let (key, words) = law.in_words();
+                        format!("{at}{key}={words}")
+                    }
+                },
+                None => format!("{at}kind={}", written(&b.kind)),
             });
         }
-        let same = Law { kind: b.kind, file: b.file.clone(), text: b.text.clone(), ..a.clone() };
+        let (file, text, module) = (b.file.clone(), b.text.clone(), b.module.clone());
+        let same = Law { kind: b.kind, file, text, module, ..a.clone() };
         self.note_table([&same, b], at, is_live::<LawPart>);
     }
 

@@ -4,6 +4,8 @@ use scene::{Law, LawSource, Scene, SceneText};
 use std::fs;
 use vocabulary::LawKind;
 
+/// `laws/rust/examples/integral.rs`, built.
+const MODULE: &[u8] = include_bytes!("../../laws/tests/modules/integral.wasm");
 const THREE: &str = include_str!("../../../scenes/circle-three.toml");
 
 /// A law with two parameters and a memory.
@@ -56,14 +58,72 @@ fn a_scene_is_written_with_the_text_of_its_laws_and_reads_back() {
     let scene = Scene::parse(&text, folder.path().join("t.toml"), &[]).expect("a scene").scene;
     let alone = Scene::parse(&scene.to_toml(), "elsewhere.toml", &[]).expect("the same scene").scene;
     assert_eq!(
-        law(&alone, "follower-1").custom().map(|law| law.text().to_owned()),
-        Some(LAW.trim().to_owned())
+        law(&alone, "follower-1").custom().map(|law| law.text().map(str::to_owned)),
+        Some(Some(LAW.trim().to_owned()))
     );
     assert_eq!(law(&alone, "follower-1").values(), [4.0, 1.0]);
     let mut edited = SceneText::parse(&text).expect("TOML");
     edited.embed_laws(&scene);
     let embedded = Scene::parse(&edited.text(), "elsewhere.toml", &[]).expect("the same scene");
     assert_eq!((embedded.files.len(), &embedded.scene), (1, &alone));
+}
+
+#[test]
+fn a_module_is_told_by_its_bytes_and_stands_in_the_scene_packed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let home = folder.path().join("t.toml");
+    fs::write(folder.path().join("mine.law"), MODULE).expect("a file");
+    let text = format!("{THREE}\n[law]\nfile = \"mine.law\"\nparameters = {{ T = 2.0 }}\n");
+    let scene = Scene::parse(&text, &home, &[]).expect("a scene").scene;
+    let own = law(&scene, "follower-1");
+    assert_eq!((own.values(), own.custom().and_then(|law| law.text())), (vec![5.0, 5.0, 2.0], None));
+    let written = scene.to_toml();
+    let alone = Scene::parse(&written, "elsewhere.toml", &[]).expect("the same scene").scene;
+    let within = law(&alone, "follower-1");
+    assert_eq!(
+        within.custom().map(|law| (law.name(), law.source().clone())),
+        Some(("law.module", LawSource::Scene))
+    );
+    assert_eq!((within.values(), alone.to_toml()), (vec![5.0, 5.0, 2.0], written));
+    let mut edited = SceneText::parse(&text).expect("TOML");
+    edited.embed_laws(&scene);
+    let embedded = Scene::parse(&edited.text(), "elsewhere.toml", &[]).expect("the same scene");
+    assert_eq!((embedded.files.len(), &embedded.scene), (1, &alone));
+    // From one law to the other while a run goes, in words.
+    let plain = parse("", &[]).expect("a scene");
+    let sets = plain.sets_to(&scene).expect("a change");
+    let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+    assert!(sets.iter().any(|set| set.starts_with("robots.follower-1.law.module=")), "{sets:?}");
+    assert_eq!(parse("", &sets).expect("a scene").robots, alone.robots);
+    // What is set last chooses.
+    let kind = Scene::parse(&edited.text(), "t.toml", &["law.kind=full-state".parse().expect("an override")]);
+    assert_eq!(law(&kind.expect("a scene").scene, "follower-1").built_in(), Some(LawKind::FullState));
+}
+
+#[test]
+fn every_mistake_of_a_module_is_told_where_it_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A module with nothing in it.
+    fs::write(folder.path().join("mine.wasm"), b"\0asm\x01\0\0\0").expect("a file");
+    let text = format!("{THREE}\n[law]\nfile = \"mine.wasm\"\n");
+    let told = Scene::parse(&text, folder.path().join("t.toml"), &[]).expect_err("no law").to_string();
+    for words in [
+        "mine.wasm: it exports no `memory`",
+        "mine.wasm: it exports no function `decide`",
+        "file = \"mine.wasm\"",
+    ] {
+        assert!(told.contains(words), "{told}");
+    }
+    let told = scene::load_law(&folder.path().join("mine.wasm")).expect_err("no law").to_string();
+    assert!(told.contains("mine.wasm: it exports no `memory`"), "{told}");
+    for (packed, words) in [
+        ("%%", "`module` has characters that nothing packed has: it is a module, packed"),
+        ("S0xK", "`module` is cut off"),
+        ("S0xKTgEA", "`module` unpacks to what is no WebAssembly module"),
+    ] {
+        let told = parse(&format!("[law]\nmodule = \"{packed}\"\n"), &[]).expect_err("no module");
+        assert!(told.contains(words), "{told}");
+    }
 }
 
 #[test]

@@ -7,7 +7,7 @@ use scene::{EditError, SceneText, toml_text};
 use vocabulary::Word;
 
 /// Keys of a scene that say which law a follower has.
-const CHOICE: [&str; 4] = ["law.kind", "law.file", "law.text", "law.parameters"];
+const CHOICE: [&str; 5] = ["law.kind", "law.file", "law.text", "law.module", "law.parameters"];
 
 /// The text of a custom law that is being edited.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -23,18 +23,15 @@ pub struct LawEdit {
 }
 
 impl AppState {
-    /// The text of the custom law of the follower that panels tune, as the editor shows it; `None` where it has a built-in law.
+    /// The text of the custom law of the follower that panels tune, as the editor shows it; `None` where it has a
+    /// built-in law, or a module, which has no text.
     pub fn law_edit(&self) -> Option<LawEdit> {
         let (.., follow) = self.tuned_follower()?;
-        let law = follow.law.custom()?;
-        let unchanged = || LawEdit {
-            text: law.text().to_owned(),
-            mistakes: vec![],
-            refusal: None,
-            of: law.text().to_owned(),
-        };
+        let text = follow.law.custom()?.text()?;
+        let unchanged =
+            || LawEdit { text: text.to_owned(), mistakes: vec![], refusal: None, of: text.to_owned() };
         // What somebody else changed in the meantime is shown as it is.
-        Some(self.law_edit.clone().filter(|edit| edit.of == law.text()).unwrap_or_else(unchanged))
+        Some(self.law_edit.clone().filter(|edit| edit.of == text).unwrap_or_else(unchanged))
     }
 
     /// Takes in an edited text: what is a law takes hold at the next sample.

@@ -66,6 +66,9 @@ pub(crate) fn parameters(ui: &mut Ui, app_state: &AppState, law: &Law, out: &mut
     for (parameter, value) in custom.declaration().parameters.iter().zip(values) {
         row(ui, parameter, value, out);
     }
+    if custom.text().is_none() {
+        return;
+    }
     let text =
         ui.button("Edit its text").on_hover_text("The panel Law text; what compiles takes hold as you type");
     on_click(&text, Action::ShowPanel("Law text"), out);
@@ -78,7 +81,12 @@ pub(crate) fn parameters(ui: &mut Ui, app_state: &AppState, law: &Law, out: &mut
 pub fn text(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
     let follow = app_state.tuned_follower().map(|(_, _, name, follow)| (name, follow));
     let Some(((name, follow), edit)) = follow.zip(app_state.law_edit()) else {
-        empty_panel(ui, app_state, "The followers have a law of the paper, which has no text.");
+        let module = app_state.tuned_follower().and_then(|(.., follow)| follow.law.custom());
+        let why = match module {
+            Some(_) => "The law is a WebAssembly module, which has no text.",
+            None => "The followers have a law of the paper, which has no text.",
+        };
+        empty_panel(ui, app_state, why);
         if app_state.tuned_follower().is_some() {
             let new = ui.button("New law").on_hover_text("A law of your own, from a template");
             on_click(&new, Action::ChooseLaw(LawChoice::Text(TEMPLATE.to_owned())), out);

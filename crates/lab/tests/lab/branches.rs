@@ -3,6 +3,9 @@
 use crate::common::{THREE, checked, run, scene, with};
 use lab::session::branches::{Branches, script};
 
+/// A law from Rust, with a memory.
+const MODULE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../laws/tests/modules/integral.wasm");
+
 /// Samples between two saved states at first.
 const MARK: u64 = 100;
 
@@ -67,6 +70,7 @@ fn ways() -> Vec<(&'static str, String)> {
         ("tags", three(&[("sensing", "{ kind = \"geometric\" }")])),
         ("unscented", three(&[("sensing", "{ kind = \"noise\" }"), ("observer.kind", "unscented")])),
         ("a law with a memory", three(&[("law.file", "integral")])),
+        ("a module with a memory", three(&[("law.file", MODULE)])),
         ("cars", include_str!("../../../../scenes/cars-line-three.toml").to_owned()),
         ("kinds", include_str!("../../../../scenes/cars-mixed.toml").to_owned()),
         ("a rough field", include_str!("../../../../scenes/cars-rough.toml").to_owned()),

@@ -67,6 +67,33 @@ fn what_compiles_takes_hold_with_the_memory_before_and_what_does_not_leaves_the_
 }
 
 #[test]
+fn a_module_has_sliders_and_signals_and_no_text() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../laws/tests/modules/integral.wasm");
+    let mut rig = Rig::new(&with(THREE, &[("law.file", file)]));
+    rig.steps(20);
+    let names = |rig: &Rig| {
+        let state = law(&rig.app_state, 1).expect("a law");
+        state.quantities.iter().map(|own| own.name.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(names(&rig)[..2], ["sum_distance", "sum_bearing"]);
+    assert!(rig.app_state.law_edit().is_none());
+    rig.act(&[Action::Tune {
+        what: "T".to_owned(),
+        key: "law.parameters.T".into(),
+        value: Some("2.5".to_owned()),
+    }]);
+    rig.steps(10);
+    let values = rig.app_state.tuned_follower().map(|(.., follow)| follow.law.values());
+    assert_eq!(values, Some(vec![5.0, 5.0, 2.5]));
+    // A branch of it is a scene that replays, and another law takes its place.
+    let (branch, script) = (rig.told(0), rig.app_state.script().expect("a scene"));
+    assert_eq!(run(&script), (branch.samples, branch.digest), "{script}");
+    rig.act(&[choose(TEMPLATE)]);
+    rig.steps(5);
+    assert_eq!(names(&rig)[0], "n");
+}
+
+#[test]
 fn parameters_keep_their_values_while_the_text_has_them() {
     let mut rig = Rig::new(THREE);
     let tune = |name: &str, value: &str| Action::Tune {

@@ -24,3 +24,5 @@ mod typed;
 
 pub use law_file::LawFile;
 pub use mistake::Mistake;
+#[cfg(feature = "wasm")]
+pub(crate) use {names::did_you_mean, symbol::symbol, token::is_name};

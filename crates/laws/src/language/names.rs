@@ -84,7 +84,7 @@ pub(super) fn called_here(name: &str) -> Option<&'static str> {
 }
 
 /// " — did you mean `…`?" with the one of `known` that is nearest to `name`, where one is near.
-pub(super) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     let scored = known.map(|known| (strsim::jaro_winkler(name, known), known));
     let best = scored.filter(|(score, _)| *score > 0.82).max_by(|a, b| a.0.total_cmp(&b.0));
     best.map_or_else(String::new, |(_, known)| format!("; did you mean `{known}`?"))

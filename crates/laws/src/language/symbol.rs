@@ -38,7 +38,7 @@ const GREEK: [(&str, &str); 34] = [
 ];
 
 /// The symbol of a name: "epsilon" is ε, "k1" and "k_1" are k₁, "beta_max" is β_max.
-pub(super) fn symbol(name: &str) -> String {
+pub(crate) fn symbol(name: &str) -> String {
     let (head, tail) = name.split_once('_').map_or((name, None), |(head, tail)| (head, Some(tail)));
     let stem = head.trim_end_matches(|c: char| c.is_ascii_digit());
     let letter = GREEK.iter().find(|(word, _)| *word == stem).map_or(stem, |(_, letter)| letter);

@@ -260,6 +260,12 @@ fn continues_name(c: char) -> bool {
     begins_name(c) || c.is_ascii_digit() || ('₀'..='₉').contains(&c)
 }
 
+/// Whether a text is a name as law files have them, and not too long.
+#[cfg(feature = "wasm")]
+pub(crate) fn is_name(text: &str) -> bool {
+    text.starts_with(begins_name) && text.chars().all(continues_name) && text.chars().count() <= NAME_MAX
+}
+
 /// What comes behind blank lines and comments.
 fn next_code(text: &str) -> &str {
     let mut rest = text.trim_start();

@@ -34,29 +34,32 @@ pub fn toml_text(text: &str) -> String {
     Value::from(text).decorated("", "").to_string()
 }
 
-/// Puts `texts` of laws in the places of the names of their files, in all tables called `law`.
-fn embed(item: &mut Item, texts: &BTreeMap<String, String>) {
+/// What stands in a scene in the place of the name of a law's file: a key, and its value.
+type Embedded = BTreeMap<String, (&'static str, String)>;
+
+/// Puts laws in the places of the names of their files, in all tables called `law`.
+fn embed(item: &mut Item, laws: &Embedded) {
     if let Item::ArrayOfTables(tables) = item {
         let tables = tables
             .iter_mut()
             .flat_map(|table| table.iter_mut().map(|(key, item)| (key.get().to_owned(), item)));
-        tables.for_each(|(key, item)| embed_in(&key, item, texts));
+        tables.for_each(|(key, item)| embed_in(&key, item, laws));
         return;
     }
     if let Some(table) = item.as_table_like_mut() {
-        table.iter_mut().for_each(|(key, item)| embed_in(key.get(), item, texts));
+        table.iter_mut().for_each(|(key, item)| embed_in(key.get(), item, laws));
     }
 }
 
-fn embed_in(key: &str, item: &mut Item, texts: &BTreeMap<String, String>) {
+fn embed_in(key: &str, item: &mut Item, laws: &Embedded) {
     let law = item.as_table_like_mut().filter(|_| key == "law");
     if let Some(law) = law
-        && let Some(text) = law.get("file").and_then(Item::as_str).and_then(|name| texts.get(name))
+        && let Some((key, words)) = law.get("file").and_then(Item::as_str).and_then(|name| laws.get(name))
     {
         law.remove("file");
-        law.insert("text", Item::Value(Value::from(text.as_str())));
+        law.insert(key, Item::Value(Value::from(words.as_str())));
     } else {
-        embed(item, texts);
+        embed(item, laws);
     }
 }
 
@@ -125,18 +128,16 @@ impl SceneText {
         Ok(())
     }
 
-    /// Writes the texts of laws that have files of their own in the places of the files' names, so that the scene needs no
-    /// other file for them; `scene` is that of the text.
+    /// Writes laws that have files of their own in the places of the files' names, so that the scene needs no other file for
+    /// them; `scene` is that of the text.
     pub fn embed_laws(&mut self, scene: &Scene) {
         let mut robots = scene.clone();
-        let mut texts = BTreeMap::new();
+        let mut laws = Embedded::new();
         robots.for_every_robot(|robot| {
             let law = robot.role.follow().and_then(|follow| follow.law.file.as_ref());
-            texts.extend(
-                law.filter(|law| law.is_apart()).map(|law| (law.name().to_owned(), law.text().to_owned())),
-            );
+            laws.extend(law.filter(|law| law.is_apart()).map(|law| (law.name().to_owned(), law.in_words())));
         });
-        embed(self.document.as_item_mut(), &texts);
+        embed(self.document.as_item_mut(), &laws);
     }
 
     /// Takes out what is written at `path`, a value or a table; comment lines stay. Whether there was anything.

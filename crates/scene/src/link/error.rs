@@ -22,7 +22,7 @@ pub enum LinkError {
     #[error("the link is cut off: {0}")]
     CutOff(String),
     /// The packed scene cannot be unpacked.
-    #[error("the scene in the link is damaged: {0}")]
+    #[error("the scene in the link is damaged: it {0}")]
     Damaged(&'static str),
     /// A part without `=`, or otherwise not of its form.
     #[error("`{0}` is no part of a link: write {1}")]

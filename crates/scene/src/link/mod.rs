@@ -7,7 +7,6 @@
 mod difference;
 mod error;
 mod opened;
-mod packed;
 mod read;
 mod shorten;
 mod written;

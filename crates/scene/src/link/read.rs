@@ -1,9 +1,9 @@
 //! A link from text.
 
 use super::error::shown;
-use super::packed::unpack;
 use super::{LATEST, Link, LinkError, LinkOrigin, LinkProof, MOST_BYTES, MOST_SETS, TimedOverride};
 use crate::document::Document;
+use crate::packed::{Damage, unpack};
 use crate::shipped::{nearest_shipped, shipped};
 use crate::text::Keys;
 use crate::{Override, composed};
@@ -113,7 +113,12 @@ fn proof(version: Option<String>, digits: Option<String>) -> Result<Option<LinkP
 
 fn origin_of(text: &str) -> Result<LinkOrigin, LinkError> {
     if let Some(packed) = text.strip_prefix('~') {
-        return unpack(packed).map(LinkOrigin::Text);
+        let bytes = unpack(packed).map_err(|damage| match damage {
+            Damage::CutOff => LinkError::CutOff("its scene ends in the middle".to_owned()),
+            Damage::Other(what) => LinkError::Damaged(what),
+        })?;
+        let text = String::from_utf8(bytes);
+        return text.map(LinkOrigin::Text).map_err(|_| LinkError::Damaged("unpacks to what is no text"));
     }
     if text.is_empty() {
         return Err(LinkError::Empty);
@@ -170,5 +175,5 @@ fn plain(text: &str) -> Result<String, LinkError> {
     }
     let text = percent_decode_str(text).decode_utf8();
     text.map(|text| composed(&text))
-        .map_err(|_| LinkError::Damaged("an escape in it stands for no character"))
+        .map_err(|_| LinkError::Damaged("has an escape that stands for no character"))
 }

@@ -1,8 +1,8 @@
 //! A link as text.
 
-use super::packed::pack;
 use super::{Link, LinkOrigin, LinkProof, TimedOverride};
 use crate::Override;
+use crate::packed::pack;
 use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use std::fmt;
 
@@ -15,7 +15,7 @@ impl fmt::Display for Link {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.origin {
             LinkOrigin::Shipped(shipped) => write!(f, "#{}", shipped.name)?,
-            LinkOrigin::Text(text) => write!(f, "#~{}", pack(text))?,
+            LinkOrigin::Text(text) => write!(f, "#~{}", pack(text.as_bytes()))?,
         }
         let sets = self.set.iter().map(written);
         let changes = self.changes.iter().map(|TimedOverride { at, set }| format!("@{at}:{}", written(set)));

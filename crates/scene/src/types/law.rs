@@ -2,7 +2,7 @@
 //! they are gains that settle.
 
 use super::{VehicleKind, WrittenLaw};
-use crate::law_file::{LawFileForm, LawTextForm, ParametersForm};
+use crate::law_file::{LawFileForm, LawModuleForm, LawTextForm, ParametersForm};
 use crate::text::{
     Couple, Flag, Form, Node, Pair, Reporter, angle, keys, number, settings, table,
     words::{Words, word},
@@ -18,10 +18,13 @@ settings! {
     pub struct Law from LawPart {
         /// Which of the built-in laws.
         pub kind: LawKind = LawKind::OutputFeedback, word::<LawKind>(), Live;
-        /// In their place a custom law: the name of its file beside the scene, or of one that comes with the program.
+        /// In their place a custom law: the name of its file beside the scene, a law file or a WebAssembly module, or of one that
+        /// comes with the program.
         pub file: Option<WrittenLaw> = None, LawFileForm, Live;
         /// In their place a custom law: its text.
         pub text: Option<WrittenLaw> = None, LawTextForm, Live;
+        /// In their place a custom law: a WebAssembly module, packed; `echelon run` writes it so where `file` names one.
+        pub module: Option<WrittenLaw> = None, LawModuleForm, Live;
         /// Parameters of the custom law by name, in the units that it declares; its defaults where they are left out.
         pub parameters: BTreeMap<String, f64> = BTreeMap::new(), ParametersForm, Live;
         /// Gains K = diag(k1, k2), 1/s.
@@ -85,14 +88,18 @@ settings! {
 impl Law {
     /// The custom law that takes the place of the built-in ones, if one does.
     pub fn custom(&self) -> Option<&WrittenLaw> {
-        self.text.as_ref().or(self.file.as_ref())
+        self.module.as_ref().or(self.text.as_ref()).or(self.file.as_ref())
     }
 
-    /// The same law without a file of its own: its text stands here.
+    /// The same law without a file of its own: it stands here.
     #[must_use]
     pub fn in_scene(&self) -> Self {
         match self.file.as_ref().filter(|law| law.is_apart()) {
-            Some(law) => Self { file: None, text: Some(law.in_scene()), ..self.clone() },
+            Some(law) => {
+                let own = Some(law.in_scene());
+                let (text, module) = if law.text().is_some() { (own, None) } else { (None, own) };
+                Self { file: None, text, module, ..self.clone() }
+            }
             None => self.clone(),
         }
     }

@@ -38,6 +38,7 @@ pub use safety::{Proximity, Safety};
 pub use sensing::{Sensing, SensingKind, Vision};
 pub use stage::{Environment, Views};
 pub use vehicle::{Compensation, Vehicle, VehicleKind};
+pub(crate) use written_law::Written;
 pub use written_law::{LawSource, WrittenLaw};
 
 pub(crate) use event::HandOverPart;
@@ -120,8 +121,8 @@ impl Scene {
         load::parse(text, path.as_ref(), overrides)
     }
 
-    /// The scene as TOML with every default written out, and with the texts of laws that have files of their own; it loads
-    /// again to an equal scene.
+    /// The scene as TOML with every default written out, and with laws that have files of their own; it loads again to an
+    /// equal scene.
     pub fn to_toml(&self) -> String {
         /// A scene as a file has it.
         #[derive(Serialize)]
