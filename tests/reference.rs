@@ -161,7 +161,7 @@ impl Case {
             other => Err(format!("unknown parameter {other}")),
         };
         let values = law.declaration().parameters.iter().map(value).collect::<Result<_, _>>()?;
-        Ok(Custom::new(name, Arc::new(law), values))
+        Ok(Custom::new(Arc::new(law), values))
     }
 
     fn setup(&self) -> Outcome<Setup> {

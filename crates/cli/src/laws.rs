@@ -203,6 +203,10 @@ fn new(file: &Path) -> Outcome {
             _ => Failure::Machine(format!("cannot write {path}: {error}")),
         }
     };
+    if file.to_str().is_some_and(|name| shipped(name).is_some()) {
+        let text = format!("{} is a law that comes with the program: choose another name", file.display());
+        return Err(Failure::Usage(text));
+    }
     let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(failed)?;
     opened.write_all(TEMPLATE.as_bytes()).map_err(failed)?;
     let path = file.display();
@@ -232,11 +236,11 @@ fn test(args: &TestArgs, as_json: bool) -> Outcome {
         let mark = if fault.place.is_some() { ":" } else { ": " };
         Failure::Broken(format!("{}{mark}{fault}", args.law.display()))
     })?;
-    let stable = end.poles.as_ref().is_some_and(|poles| poles.iter().all(|pole| pole.re < 0.0));
+    let stable = end.poles.as_ref().is_some_and(|poles| poles.iter().all(|pole| pole.re < -MARGINAL));
     if as_json {
         json(&end_json(&end, stable));
     } else {
-        tell_end(&law, args, &end, stable);
+        tell_end(&law, &parameters, args, &end, stable);
     }
     if stable { Ok(()) } else { Err(Failure::Expectation) }
 }
@@ -286,9 +290,16 @@ fn leaders(law: &WrittenLaw, args: &TestArgs) -> Result<SteadyLeaders, Failure> 
     Ok(SteadyLeaders { places, wanted, speed, turn_rate, period, start })
 }
 
-fn tell_end(law: &WrittenLaw, args: &TestArgs, end: &LoopEnd, stable: bool) {
+fn tell_end(law: &WrittenLaw, parameters: &[f64], args: &TestArgs, end: &LoopEnd, stable: bool) {
     let TestArgs { distance, bearing, speed, turn_rate, period, .. } = args;
     say(&format!("{}: {}", args.law.display(), law.declaration().title));
+    let declared = law.declaration().parameters.iter().zip(parameters);
+    let values: Vec<String> = declared
+        .map(|(own, value)| format!("{} {value} {}", own.symbol, own.unit).trim_end().to_owned())
+        .collect();
+    if !values.is_empty() {
+        say(&values.join(" · "));
+    }
     let place = match law.declaration().leaders {
         1 => format!("{distance} m at {bearing}° from a leader"),
         count => {
@@ -319,8 +330,16 @@ fn tell_end(law: &WrittenLaw, args: &TestArgs, end: &LoopEnd, stable: bool) {
     if !apart.is_empty() {
         say(&format!("nothing depends on {}: without a pole", apart.join(", ")));
     }
-    say(if stable { "stable" } else { "not stable" });
+    let grows = poles.iter().any(|pole| pole.re > MARGINAL);
+    say(match (stable, grows) {
+        (true, _) => "stable",
+        (false, true) => "not stable",
+        (false, false) => "not asymptotically stable: what does not decay stays",
+    });
 }
+
+/// A pole this near to the imaginary axis is on it, 1/s.
+const MARGINAL: f64 = 1e-5;
 
 /// A number with so many decimals, and no sign before zero.
 fn rounded(value: f64, decimals: usize) -> String {
@@ -330,10 +349,14 @@ fn rounded(value: f64, decimals: usize) -> String {
 
 fn line(pole: &Pole) -> String {
     let size = math::hypot(pole.re, pole.im);
-    let value =
-        if pole.im == 0.0 { format!("{:.3}", pole.re) } else { format!("{:.3} ± {:.3}i", pole.re, pole.im) };
-    let damping = if size > 0.0 { -pole.re / size } else { 0.0 };
-    let time = if pole.re < 0.0 { format!("{:.3} s", -1.0 / pole.re) } else { "grows".to_owned() };
+    let (re, im) = (rounded(pole.re, 3), pole.im);
+    let value = if im == 0.0 { re } else { format!("{re} ± {im:.3}i") };
+    let damping = if size > MARGINAL { -pole.re / size } else { 0.0 };
+    let time = match pole.re {
+        re if re.abs() < MARGINAL => "does not decay".to_owned(),
+        re if re > 0.0 => "grows".to_owned(),
+        re => format!("{:.3} s", -1.0 / re),
+    };
     format!("{value:<24}  {damping:>7.3}  {time:>13}")
 }
 

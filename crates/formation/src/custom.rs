@@ -7,7 +7,6 @@ use vocabulary::{Command, LawQuantity, LawState};
 /// A custom law and its parameters.
 #[derive(Debug, Clone)]
 pub struct Custom {
-    name: String,
     law: Arc<dyn CustomLaw>,
     parameters: Vec<f64>,
     quantities: Arc<[LawQuantity]>,
@@ -21,12 +20,12 @@ impl PartialEq for Custom {
 }
 
 impl Custom {
-    /// A law that messages call `name`, and its parameters in the order of its declaration.
-    pub fn new(name: impl Into<String>, law: Arc<dyn CustomLaw>, parameters: Vec<f64>) -> Self {
+    /// A law, and its parameters in the order of its declaration.
+    pub fn new(law: Arc<dyn CustomLaw>, parameters: Vec<f64>) -> Self {
         let Declaration { memory, shown, .. } = law.declaration();
         let quantity = |own: &Quantity| LawQuantity { name: own.name.clone(), unit: own.unit.to_string() };
         let quantities = memory.iter().chain(shown).map(quantity).collect();
-        Self { name: name.into(), law, parameters, quantities }
+        Self { law, parameters, quantities }
     }
 
     /// The law.
@@ -49,8 +48,7 @@ impl Custom {
         out.values.resize(self.quantities.len(), 0.0);
         out.fault.clear();
         if let Some(fault) = &state.fault {
-            let mark = if fault.place.is_some() { ":" } else { ": " };
-            out.fault = format!("{}{mark}{fault}", self.name);
+            out.fault = fault.to_string();
         }
     }
 }

@@ -934,7 +934,7 @@ mod tests {
             [("a", "b")].into_iter().chain(leaders.iter().map(|leader| (*leader, "c"))).collect();
         formation.graph = Graph::new(&["a", "b", "c"], &pairs).expect("a graph");
         let edge = formation.edges[1].clone();
-        let custom = Some(Custom::new("counting", Counting::new(leaders.len()), vec![3.0]));
+        let custom = Some(Custom::new(Counting::new(leaders.len()), vec![3.0]));
         formation.edges.truncate(1);
         formation.edges.extend(leaders.iter().map(|_| EdgeLaw { custom: custom.clone(), ..edge.clone() }));
         formation.edges[leaders.len()].free = [false, true];
@@ -975,9 +975,9 @@ mod tests {
         assert_eq!(decide(&formation, 3), (braking, false, true, 3.0));
         // With other parameters it goes on where it was; another law with the same memory takes that over.
         let law = Counting::new(1);
-        formation.edges[1].custom = Some(Custom::new("counting", law.clone(), vec![4.0]));
+        formation.edges[1].custom = Some(Custom::new(law.clone(), vec![4.0]));
         assert_eq!(decide(&formation, 4), (Command { acceleration: 0.5, turn_rate: 4.0 }, false, false, 4.0));
-        formation.edges[1].custom = Some(Custom::new("counting", law, vec![9.0]));
+        formation.edges[1].custom = Some(Custom::new(law, vec![9.0]));
         assert_eq!(decide(&formation, 5).3, 5.0);
     }
 

@@ -124,7 +124,7 @@ pub struct LawFaultMetrics {
     pub time: f64,
     /// Number of the control sample.
     pub sample: u64,
-    /// The law, where in its text, and why.
+    /// Where in its text, and why.
     pub fault: String,
 }
 

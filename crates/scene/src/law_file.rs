@@ -25,7 +25,7 @@ pub(crate) fn replaced_by(table: &str, key: &str) -> impl Iterator<Item = &'stat
     LAW_CHOICE.into_iter().filter(move |other| chooses && *other != key)
 }
 
-/// The name of a law file beside the scene, else of one that comes with the program.
+/// The name of a law that comes with the program, else of a law file beside the scene.
 pub(crate) struct LawFileForm;
 
 /// The text of a law.
@@ -43,11 +43,12 @@ impl Form for LawFileForm {
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
         let name = reporter.expect(node.as_text(), node, || "the name of a law file".to_owned())?;
         let path = reporter.beside_scene(name);
-        if let Some(law) = shipped(name).filter(|_| !path.exists()) {
+        // A shipped scene is the same wherever it runs.
+        if let Some(law) = shipped(name) {
             return compiled(LawSource::Shipped(name.to_owned()), name.to_owned(), law.text, reporter)
                 .map(Some);
         }
-        match read_bytes(&path) {
+        match read_law(&path) {
             Ok(bytes) => {
                 reporter.files.push(path.clone());
                 let (source, origin) = (LawSource::File(name.to_owned()), path.display().to_string());
@@ -63,8 +64,8 @@ impl Form for LawFileForm {
                 compiled(source, origin, &text, reporter).map(Some)
             }
             Err(fault) => {
-                let known = SHIPPED_LAWS.iter().map(|law| law.name);
-                reporter.report(node.span, format!("{}: {fault}{}", path.display(), instead_of(name, known)));
+                let hint = if path.exists() { String::new() } else { elsewhere(name, &path) };
+                reporter.report(node.span, format!("{}: {fault}{hint}", path.display()));
                 None
             }
         }
@@ -73,6 +74,25 @@ impl Form for LawFileForm {
     fn schema(&self) -> Json {
         json!({ "type": "string" })
     }
+}
+
+/// The bytes of a law's file. One that is no file, such as a pipe, would be waited for without a word.
+fn read_law(path: &Path) -> Result<Vec<u8>, String> {
+    match path.metadata() {
+        Ok(about) if !about.is_file() && !about.is_dir() => {
+            Err("is no file: laws are read from files".to_owned())
+        }
+        _ => read_bytes(path),
+    }
+}
+
+/// What to say of a law file that is not beside the scene.
+fn elsewhere(name: &str, path: &Path) -> String {
+    if !name.is_empty() && Path::new(name).is_file() && Path::new(name) != path {
+        return ": law files are looked for beside the scene; there is one of that name in this folder"
+            .to_owned();
+    }
+    instead_of(name, SHIPPED_LAWS.iter().map(|law| law.name))
 }
 
 impl Form for LawTextForm {
@@ -127,12 +147,12 @@ impl Form for LawModuleForm {
 pub fn load_law(path: &Path) -> Result<WrittenLaw, Diagnostics> {
     let mut reporter = Reporter::new(Path::new(""));
     let name = path.display().to_string();
-    let known = path.to_str().and_then(shipped).filter(|_| !path.exists());
+    let known = path.to_str().and_then(shipped);
     let law = if let Some(law) = known {
         compiled(LawSource::Shipped(name.clone()), name, law.text, &mut reporter)
     } else {
         let whole = |messages| Diagnostics::whole_file(path, messages);
-        let bytes = read_bytes(path).map_err(|fault| {
+        let bytes = read_law(path).map_err(|fault| {
             let known = SHIPPED_LAWS.iter().map(|law| law.name);
             let hint = if path.exists() { String::new() } else { instead_of(&name, known) };
             whole(vec![fault + &hint])

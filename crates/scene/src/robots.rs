@@ -50,6 +50,17 @@ impl Defaults {
             let find = |key: &&str| own.span_of(key).or_else(|| self.law.span_of(key));
             reporter.report(keys.iter().find_map(find).unwrap_or(span), message);
         };
+        for part in [own, &self.law] {
+            let choices = [
+                ("file", part.file.is_some()),
+                ("text", part.text.is_some()),
+                ("module", part.module.is_some()),
+            ];
+            let written: Vec<&str> = choices.iter().filter(|(_, is)| *is).map(|(key, _)| *key).collect();
+            if written.len() > 1 {
+                report(&written[1..], format!("give one of `{}`: each is a law", written.join("`, `")));
+            }
+        }
         match law.custom() {
             Some(custom) => faults(&law.parameters, custom).into_iter().for_each(|fault| report(&["parameters"], fault)),
             None if law.parameters.is_empty() => {}

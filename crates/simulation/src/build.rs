@@ -131,6 +131,11 @@ fn check_continuous(scene: &Scene, followers: &[(&str, &Follow)]) -> Result<(), 
     {
         return Err(BuildError::PathHeading { robot: (*name).to_owned() });
     }
+    for (name, follow) in followers {
+        if let Some(law) = follow.law.custom().filter(|law| !law.declaration().continuous) {
+            return Err(BuildError::SampledLaw { robot: (*name).to_owned(), law: law.name().to_owned() });
+        }
+    }
     for (name, follow) in followers.iter().filter(|(_, f)| f.law.observes()) {
         let [a, b] = follow.observer.epsilon;
         if a.min(b) < EPSILON_MIN {
@@ -164,7 +169,7 @@ pub fn edge_law(follow: &Follow, leader: &Leader, now: [f64; 2]) -> EdgeLaw {
                 }
             },
         },
-        custom: law.custom().map(|custom| Custom::new(custom.name(), custom.law(), law.values())),
+        custom: law.custom().map(|custom| Custom::new(custom.law(), law.values())),
         observer,
         tracker: tracker_parameters(follow, observer),
         set_point: SetPointTrajectory {

@@ -36,6 +36,17 @@ pub enum BuildError {
         /// The follower.
         robot: String,
     },
+    /// A custom law that acts at samples, in continuous time.
+    #[error(
+        "{law}, the law of `{robot}`, acts at samples only: a memory is assigned in it, or it uses `noise`; give its memories \
+         derivatives, as in `sum' = e`, or use mode \"sampled\""
+    )]
+    SampledLaw {
+        /// The follower.
+        robot: String,
+        /// Its law.
+        law: String,
+    },
     /// An observer too fast for continuous time.
     #[error(
         "the observer of `{robot}` has ε = {epsilon} s: mode \"continuous\" takes steps of an eighth of it and would \

@@ -14,12 +14,17 @@ pub(crate) fn not_finite(fault: &NotFinite) -> JudgedExpectation {
 }
 
 /// What every custom law is asked for.
-fn law_fault(fault: &LawFaultMetrics) -> JudgedExpectation {
+fn law_fault(scene: &Scene, fault: &LawFaultMetrics) -> JudgedExpectation {
     let LawFaultMetrics { robot, time, sample, fault } = fault;
+    let last = scene.changes.iter().rfind(|change| change.at <= time + 1e-9);
+    let then = last.map_or(scene, |change| &change.then);
+    let follow = then.followers().find(|(name, _)| name == robot).map(|(_, follow)| follow);
+    let law = follow.and_then(|follow| follow.law.custom()).map_or("its law", |law| law.name());
+    let mark = if fault.starts_with(|c: char| c.is_ascii_digit()) { ":" } else { ": " };
     JudgedExpectation {
         key: "law",
         wanted: "a command at every sample".to_owned(),
-        found: format!("{robot}, t = {time:.2} s (sample {sample}), {fault}"),
+        found: format!("{robot}, t = {time:.2} s (sample {sample}), {law}{mark}{fault}"),
         met: Some(false),
     }
 }
@@ -29,7 +34,7 @@ pub fn verdict(scene: &Scene, metrics: &Metrics, completed: bool) -> Vec<JudgedE
     // Where the scene ends a run at a contact, that is its end.
     let stopped = scene.physics.on_contact == OnContact::Stop && metrics.contacts > 0;
     let planned = scene.events.len();
-    let mut findings: Vec<_> = metrics.law_faults.iter().map(law_fault).collect();
+    let mut findings: Vec<_> = metrics.law_faults.iter().map(|fault| law_fault(scene, fault)).collect();
     findings.extend(expectations(&scene.expect, planned, metrics, completed || stopped));
     if scene.physics.on_contact == OnContact::Fail && !scene.expect.no_contact {
         let mut more = ExpectationJudge { metrics, list: Vec::new() };

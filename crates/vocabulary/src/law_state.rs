@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 /// Memory and shown quantities of a follower's custom law.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct LawState {
     /// Index of the follower.
     pub robot: usize,
@@ -11,7 +11,7 @@ pub struct LawState {
     pub quantities: Arc<[LawQuantity]>,
     /// Their values, in the units of [`LawQuantity::unit`]. Those that are only shown may be no finite numbers.
     pub values: Vec<f64>,
-    /// Why the law broke off, at the sample at which it did; else empty.
+    /// Where in its text and why the law broke off, at the sample at which it did; else empty.
     pub fault: String,
 }
 
@@ -24,10 +24,32 @@ pub struct LawQuantity {
     pub unit: String,
 }
 
+/// Two are the same bit for bit: what is no number equals itself.
+impl PartialEq for LawState {
+    fn eq(&self, other: &Self) -> bool {
+        let bits = |state: &Self| state.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        (self.robot, &self.quantities, &self.fault) == (other.robot, &other.quantities, &other.fault)
+            && bits(self) == bits(other)
+    }
+}
+
 impl LawState {
     /// The value of the quantity called `name`.
     pub fn value(&self, name: &str) -> Option<f64> {
         let index = self.quantities.iter().position(|quantity| quantity.name == name)?;
         self.values.get(index).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_equals_itself() {
+        let state = |value| LawState { values: vec![1.0, value], ..LawState::default() };
+        assert_eq!(state(f64::NAN), state(f64::NAN));
+        assert_ne!(state(f64::NAN), state(1.0));
+        assert_ne!(state(0.0), state(-0.0));
     }
 }

@@ -4,7 +4,7 @@ use super::AppState;
 use crate::action::LawChoice;
 use laws::{CustomLaw, Declaration, LawFile, Mistake};
 use scene::{EditError, SceneText, toml_text};
-use vocabulary::Word;
+use vocabulary::{EntityId, StepRecord, Word};
 
 /// Keys of a scene that say which law a follower has.
 const CHOICE: [&str; 5] = ["law.kind", "law.file", "law.text", "law.module", "law.parameters"];
@@ -16,7 +16,7 @@ pub struct LawEdit {
     pub text: String,
     /// What is wrong with it; the law before is at work then.
     pub mistakes: Vec<Mistake>,
-    /// Why the scene does not take it, though it is a law.
+    /// Why the scene does not take it, though it is a law; or why it broke off as it drove.
     pub refusal: Option<String>,
     /// The text of the law that is at work.
     of: String,
@@ -32,6 +32,25 @@ impl AppState {
             || LawEdit { text: text.to_owned(), mistakes: vec![], refusal: None, of: text.to_owned() };
         // What somebody else changed in the meantime is shown as it is.
         Some(self.law_edit.clone().filter(|edit| edit.of == text).unwrap_or_else(unchanged))
+    }
+
+    /// Laws that broke off at samples that have arrived: in the log, and under their text.
+    pub(crate) fn note_law_faults(&mut self, records: &[StepRecord]) {
+        for record in records {
+            for state in record.laws.iter().filter(|state| !state.fault.is_empty()) {
+                let robot =
+                    self.fleet().map_or("", |fleet| fleet.name(EntityId::Robot(state.robot))).to_owned();
+                let time = record.snapshot.time;
+                let text = format!(
+                    "Law of {robot}, t = {time:.2} s, {}; it brakes until its law is changed",
+                    state.fault
+                );
+                self.say(text.clone(), true);
+                if let Some(edit) = self.law_edit() {
+                    self.law_edit = Some(LawEdit { refusal: Some(text), ..edit });
+                }
+            }
+        }
     }
 
     /// Takes in an edited text: what is a law takes hold at the next sample.

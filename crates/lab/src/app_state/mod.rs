@@ -482,6 +482,7 @@ impl AppState {
                 self.check_choice();
             }
             RunEvent::Records(branch, records) => {
+                self.note_law_faults(&records);
                 if let Some(history) = &mut self.history {
                     for record in records {
                         history.push(branch, record);

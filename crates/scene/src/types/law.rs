@@ -18,8 +18,8 @@ settings! {
     pub struct Law from LawPart {
         /// Which of the built-in laws.
         pub kind: LawKind = LawKind::OutputFeedback, word::<LawKind>(), Live;
-        /// In their place a custom law: the name of its file beside the scene, a law file or a WebAssembly module, or of one that
-        /// comes with the program.
+        /// In their place a custom law: the name of one that comes with the program, or else of a law file or a WebAssembly
+        /// module beside the scene.
         pub file: Option<WrittenLaw> = None, LawFileForm, Live;
         /// In their place a custom law: its text.
         pub text: Option<WrittenLaw> = None, LawTextForm, Live;
