@@ -8,6 +8,7 @@ mod common;
 mod dataset;
 mod figures;
 mod films;
+mod laws;
 mod links;
 mod logs;
 mod outputs;

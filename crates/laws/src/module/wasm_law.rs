@@ -70,7 +70,9 @@ impl WasmLaw {
         }
         let one = |error: Error| vec![told(&error)];
         let engine = Engine::new(&config());
-        let module = Module::new(&engine, bytes)
+        // First all of it: where code stands behind the end of a function, translation would panic before validation.
+        let module = Module::validate(&engine, bytes).and_then(|()| Module::new(&engine, bytes));
+        let module = module
             .map_err(|error| vec![format!("it is not a module that can run here: {}", told(&error))])?;
         let linker = offered(&engine).map_err(one)?;
         let mut mistakes = exports_missing(&module);
