@@ -246,10 +246,16 @@ fn every_law_takes_up_its_place() {
     }
 }
 
+/// Two leaders drive straight on side by side, or turn about one centre; the distances to both are held.
 #[test]
 fn two_distances_are_held_at_once() {
-    let mut leaders = [Robot::new(0.0, 0.0, 0.0, 1.0), Robot::new(0.0, 2.0, 0.0, 1.0)];
-    let mut own = Robot::new(-2.5, 0.5, 0.2, 0.5);
-    let errors = driven("two-distances", &mut leaders, &mut own, &[[2.0, 0.0], [2.0, 0.0]], 15.0);
-    assert!(errors.iter().all(|error| error[0].abs() < 1e-6), "{errors:?}");
+    for (turn_rate, speeds, most) in [(0.0, [1.0, 1.0], 1e-6), (0.2, [1.0, 0.6], 1e-3)] {
+        let mut leaders = [Robot::new(0.0, 0.0, 0.0, speeds[0]), Robot::new(0.0, 2.0, 0.0, speeds[1])];
+        for leader in &mut leaders {
+            leader.motion.turn_rate = turn_rate;
+        }
+        let mut own = Robot::new(-2.5, 0.5, 0.2, 0.5);
+        let errors = driven("two-distances", &mut leaders, &mut own, &[[2.0, 0.0], [2.0, 0.0]], 15.0);
+        assert!(errors.iter().all(|error| error[0].abs() < most), "{turn_rate}: {errors:?}");
+    }
 }

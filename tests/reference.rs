@@ -4,7 +4,8 @@
 //! `reference.py` made the golden files, and those of the folder named by `ECHELON_REFERENCE_DIR` if it is set.
 
 use formation::lead::AnalyticTrajectory;
-use formation::{EdgeLaw, Formation, Graph, Heading, Law, Observer, SetPointTrajectory, Switching};
+use formation::{Custom, EdgeLaw, Formation, Graph, Heading, Law, Observer, SetPointTrajectory, Switching};
+use laws::{CustomLaw, LawFile};
 use serde::Deserialize;
 use simulation::{Setup, Simulation};
 use std::error::Error;
@@ -31,6 +32,9 @@ struct Case {
     bounds: Bounds,
     robots: Vec<Robot>,
     edges: Vec<EdgeCase>,
+    /// Whether the law is read from its law file; else it is the built-in one.
+    #[serde(default)]
+    from_file: bool,
 }
 
 #[derive(Deserialize)]
@@ -124,7 +128,7 @@ impl Case {
                 distance_min,
                 heading: Heading::Leader,
             },
-            custom: None,
+            custom: self.from_file.then(|| self.custom()).transpose()?,
             observer: Observer {
                 epsilon: [c.epsilon; 2],
                 alpha1: [c.alpha1; 2],
@@ -137,6 +141,27 @@ impl Case {
             standing: false,
             narrowing: None,
         })
+    }
+
+    /// The same law, read from the law file that ships.
+    fn custom(&self) -> Outcome<Custom> {
+        let c = &self.controller;
+        let name = match &*c.kind {
+            "FSFB" => "full-state",
+            "RSFB" => "robust-state",
+            _ => "output-feedback",
+        };
+        let text = laws::shipped(name).ok_or("no such law")?.text;
+        let law = LawFile::compile(text).map_err(|mistakes| format!("{name}: {mistakes:?}"))?;
+        let value = |parameter: &laws::Parameter| match &*parameter.name {
+            "k1" => Ok(c.k[0]),
+            "k2" => Ok(c.k[1]),
+            "beta1" | "beta2" => Ok(c.beta),
+            "kappa1" | "kappa2" => Ok(c.slope),
+            other => Err(format!("unknown parameter {other}")),
+        };
+        let values = law.declaration().parameters.iter().map(value).collect::<Result<_, _>>()?;
+        Ok(Custom::new(name, Arc::new(law), values))
     }
 
     fn setup(&self) -> Outcome<Setup> {
@@ -192,7 +217,8 @@ impl Case {
                 vec![limits; names.len()],
                 vec![(0, lead.clone())],
                 self.period,
-            ),
+            )
+            .in_continuous_time(self.mode == "continuous"),
             mode: match &*self.mode {
                 "continuous" => TimeMode::Continuous,
                 "sampled" => TimeMode::Sampled,
@@ -350,19 +376,22 @@ fn every_reference_case_is_reproduced() {
         println!("{}: {} cases", folder.display(), paths.len());
         for path in paths {
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            let result = check(&folder, &path, &name);
-            if let Err(problem) = result {
-                println!("{name:36} FAILED: {problem}");
-                failures.push(format!("{name}: {problem}"));
+            for from_file in [false, true] {
+                let name = if from_file { format!("{name}, law file") } else { name.clone() };
+                if let Err(problem) = check(&folder, &path, &name, from_file) {
+                    println!("{name:46} FAILED: {problem}");
+                    failures.push(format!("{name}: {problem}"));
+                }
             }
         }
     }
     assert!(failures.is_empty(), "{} cases failed:\n{}", failures.len(), failures.join("\n"));
 }
 
-fn check(folder: &Path, path: &Path, name: &str) -> Outcome<()> {
-    let case: Case = serde_json::from_str(&fs::read_to_string(path)?)?;
-    let rows = golden(&folder.join("golden").join(format!("{name}.csv")))?;
+fn check(folder: &Path, path: &Path, name: &str, from_file: bool) -> Outcome<()> {
+    let case = Case { from_file, ..serde_json::from_str(&fs::read_to_string(path)?)? };
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let rows = golden(&folder.join("golden").join(format!("{stem}.csv")))?;
     let found = compare(&case, &rows, &records(&case)?)?;
     report(name, &found);
     if found.compared < 2 || found.compared != rows.len() {
@@ -373,7 +402,7 @@ fn check(folder: &Path, path: &Path, name: &str) -> Outcome<()> {
 
 fn report(name: &str, found: &Deviation) {
     println!(
-        "{name:36} {:4} rows   states {:9.2e} ({:20})   inputs and rates {:9.2e} ({})",
+        "{name:46} {:4} rows   states {:9.2e} ({:20})   inputs and rates {:9.2e} ({})",
         found.compared, found.states.size, found.states.at, found.rates.size, found.rates.at
     );
 }

@@ -51,7 +51,17 @@ const ARROWS: [(&str, &[&str]); 20] = [
     ("digests", &["vocabulary", "metrics", "scene", "simulation"]),
     (
         "studies",
-        &["vocabulary", "output", "metrics", "scene", "formation", "perception", "simulation", "recording"],
+        &[
+            "vocabulary",
+            "output",
+            "metrics",
+            "laws",
+            "scene",
+            "formation",
+            "perception",
+            "simulation",
+            "recording",
+        ],
     ),
     ("report", &["vocabulary", "scene", "simulation", "studies", "metrics", "figures"]),
     (

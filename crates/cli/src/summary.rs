@@ -40,7 +40,7 @@ pub(crate) fn as_text(summary: &Summary<'_>) {
     let Summary { scene, metrics, .. } = summary;
     say(&format!("{}\n{}\n", scene.title, studies::caption(scene)));
     events(metrics);
-    edges(metrics);
+    edges(scene, metrics);
     if let (Some(clearance), Some(time), Some([a, b])) =
         (metrics.clearance_min, metrics.clearance_min_time, &metrics.clearance_min_robots)
     {
@@ -118,7 +118,7 @@ fn events(metrics: &Metrics) {
     }
 }
 
-fn edges(metrics: &Metrics) {
+fn edges(scene: &Scene, metrics: &Metrics) {
     if metrics.edges.is_empty() {
         return;
     }
@@ -127,16 +127,24 @@ fn edges(metrics: &Metrics) {
         "{:width$}  {:>23}  {:>23}  {:>9}  {:>7}",
         "edge", "final error", "rms error", "settled", "limited"
     ));
-    let channel = |e: [f64; 2]| format!("{:>10.4} m {:>8.3}°", e[0], e[1].to_degrees());
+    // Edges of robots that join are not left free.
+    let free = scene.edges().map(|(_, _, leader)| [leader.distance.is_none(), leader.bearing.is_none()]);
+    let free = free.chain(std::iter::repeat([false; 2]));
+    let channel = |e: [f64; 2], free: [bool; 2]| {
+        let said = |text: String, free: bool| if free { "free".to_owned() } else { text };
+        let distance = said(format!("{:.4} m", e[0]), free[0]);
+        let bearing = said(format!("{:.3}°", e[1].to_degrees()), free[1]);
+        format!("{distance:>12} {bearing:>9}")
+    };
     // An edge that was never in force says nothing.
-    let edges = metrics.edges.iter().filter(|edge| edge.ended.is_none_or(|end| end > 0.0));
-    for edge in edges.take(MOST_EDGES) {
+    let edges = metrics.edges.iter().zip(free).filter(|(edge, _)| edge.ended.is_none_or(|end| end > 0.0));
+    for (edge, free) in edges.take(MOST_EDGES) {
         let name = format!("{} → {}", edge.leader, edge.follower);
         let settled = match edge.ended {
             Some(time) => format!("to {time:.2} s"),
             None => edge.settling_time.map_or("never".to_owned(), |t| format!("{t:.2} s")),
         };
-        let (last, rms) = (channel(edge.final_error), channel(edge.rms_error));
+        let (last, rms) = (channel(edge.final_error, free), channel(edge.rms_error, free));
         let limited = format!("{:.1} %", edge.limited * 100.0);
         say(&format!("{name:width$}  {last:>23}  {rms:>23}  {settled:>9}  {limited:>7}"));
     }

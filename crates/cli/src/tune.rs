@@ -8,6 +8,7 @@ use crate::progress::Progress;
 use crate::{Outcome, interrupt};
 use clap::Args;
 use serde_json::json;
+use std::collections::BTreeMap;
 use studies::SceneRun;
 use studies::tune::{Trial, tune as search};
 use vocabulary::counted;
@@ -56,10 +57,8 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
         ));
         row("as it is", first);
         row("best", best);
-        let gains = &best.gains;
         say(&format!("\nof {}; in the scene:\n", counted(tried, "run")));
-        say(&format!("[law]\nk = {:.2}\nbeta = {:.2}\nslope = {:.1}\n", gains.k, gains.beta, gains.slope));
-        say(&format!("[observer]\nepsilon = {:.4}", gains.epsilon));
+        say(&in_scene(&best.gains));
     }
     if interrupted {
         return Err(Failure::Interrupted(format!(
@@ -68,6 +67,27 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
         )));
     }
     Ok(())
+}
+
+/// Gains as a scene has them.
+fn in_scene(gains: &BTreeMap<String, f64>) -> String {
+    match ["k", "beta", "slope", "epsilon"].map(|name| gains.get(name)) {
+        [Some(k), Some(beta), Some(slope), Some(epsilon)] if gains.len() == 4 => {
+            format!(
+                "[law]\nk = {k:.2}\nbeta = {beta:.2}\nslope = {slope:.1}\n\n[observer]\nepsilon = {epsilon:.4}"
+            )
+        }
+        _ => {
+            let value = |(name, value): (&String, &f64)| format!("{name} = {}", rounded(*value));
+            let all: Vec<String> = gains.iter().map(value).collect();
+            format!("[law]\nparameters = {{ {} }}", all.join(", "))
+        }
+    }
+}
+
+/// A value to four digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 fn row(name: &str, trial: &Trial) {

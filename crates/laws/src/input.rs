@@ -183,6 +183,15 @@ impl InputKind {
         self >= Self::Distance
     }
 
+    /// For what is wanted: of the distance, 0, or the bearing, 1.
+    pub fn wanted(self) -> Option<usize> {
+        match self {
+            K::WantedDistance | K::WantedDistanceRate | K::WantedDistanceAcceleration => Some(0),
+            K::WantedBearing | K::WantedBearingRate | K::WantedBearingAcceleration => Some(1),
+            _ => None,
+        }
+    }
+
     /// Whether only laws that know their leader's motion may read it.
     pub fn is_motion(self) -> bool {
         self >= Self::LeaderSpeed

@@ -3,6 +3,8 @@
 //! A custom law comes with a [`Declaration`]: its parameters with units and ranges, its memory, how many leaders it looks at
 //! and what it has to know of them. It is told an [`Input`] and decides a [`vocabulary::Command`], dv/dt and ω. It has no
 //! clock, no files, no other robots, and no randomness but [`Noise`], so a run replays bit for bit.
+//!
+//! A [`LawFile`] is a custom law that is written as text, in a language of its own: `docs/law-files.md` is its reference.
 
 mod custom_law;
 mod declaration;

@@ -105,6 +105,7 @@ pub(crate) fn check_several(
     if !follow.leaders.are_several() {
         return;
     }
+    check_wanted(name, follow, span, reporter);
     let kind = follow.sensing.kind;
     let sensing = format!("sensing `{}`: a camera looks at one leader; use `truth` or `noise`", kind.word());
     let looks = safety.acts(false) && (safety.view_distance.is_some() || safety.view_angle.is_some());
@@ -116,6 +117,27 @@ pub(crate) fn check_several(
     ] {
         if has {
             reporter.report(span, format!("`{name}` has several leaders and cannot have {what}"));
+        }
+    }
+}
+
+/// Reports what a custom law reads of a set point that is left free.
+fn check_wanted(name: &str, follow: &Follow, span: Span, reporter: &mut Reporter) {
+    let Some(law) = follow.law.custom() else { return };
+    let mut told = vec![];
+    for (index, kind) in &law.declaration().reads {
+        let (Some(part), Some(leader)) = (kind.wanted(), follow.leaders.iter().nth(*index)) else { continue };
+        let (what, absent) =
+            [("distance", leader.distance.is_none()), ("bearing", leader.bearing.is_none())][part];
+        if absent && !told.contains(&(*index, part)) {
+            told.push((*index, part));
+            let number = index + 1;
+            let message = format!(
+                "{} reads `wanted{number}.{what}`, but `{name}` leaves its {what} from `{}` free: give it a `{what}`",
+                law.name(),
+                leader.name
+            );
+            reporter.report(span, message);
         }
     }
 }

@@ -78,7 +78,7 @@ fn what_is_wrong_is_said_once_and_where_it_is() {
             "`distance` falls to 0.01 m, below the law's",
         ),
         (two(bob, r#"{ name = "cy", bearing = "900 deg" }"#), ":23:", "`bearing` must be an angle"),
-        (two(bob, r#"{ distance = 1.0 }"#), ":23:", "`name` is missing"),
+        (two(bob, "{ distance = 1.0 }"), ":23:", "`name` is missing"),
         (two(bob, r#"{ name = "cy", distance = 1.0, spacing = 1.0 }"#), ":23:", "unknown key `spacing`"),
         (format!("leaders = [{bob}]"), ":23:", "`leaders` must be a list of 2 to 4 values"),
         (format!("{TWO}\nleader = \"bob\""), ":24:", "leave out this `leader`"),
@@ -270,4 +270,18 @@ fn a_law_says_how_many_leaders_its_follower_has() {
     );
     let told = fault(&group);
     assert!(told.contains("`robot-2` has one leader, and its law looks at 2"), "{told}");
+}
+
+#[test]
+fn what_a_law_reads_of_a_set_point_must_not_be_left_free() {
+    let text = "leaders 2\nlet e = wrap(wanted1.bearing - leader1.bearing)\n\
+                command = (wanted2.distance - leader2.distance) / 1 [s^2], e / 1 [s]";
+    let law = format!("law = {{ text = {text:?} }}");
+    let leaders = "leaders = [{ name = \"bob\", distance = 2.0 }, { name = \"cy\", distance = 2.0 }]";
+    let told = fault(&scene(&format!("{leaders}\n{law}")));
+    assert!(
+        told.contains("law.text reads `wanted1.bearing`, but `dan` leaves its bearing from `bob` free"),
+        "{told}"
+    );
+    assert!(!told.contains("wanted2"), "{told}");
 }

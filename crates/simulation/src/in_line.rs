@@ -49,7 +49,7 @@ pub fn in_line(simulation: &Simulation) -> Vec<String> {
 }
 
 fn flat(angle: f64) -> bool {
-    angle < IN_LINE || angle > std::f64::consts::PI - IN_LINE
+    !(IN_LINE..=std::f64::consts::PI - IN_LINE).contains(&angle)
 }
 
 fn told(who: &str, when: &str, angle: f64) -> String {

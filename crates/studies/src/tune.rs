@@ -6,32 +6,34 @@
 
 use cobyla::{RhoBeg, StopTols, minimize};
 use metrics::{Metrics, MetricsBuilder};
-use scene::{Role, Scene};
+use scene::{Follow, Role, Scene, WrittenLaw};
 use serde::Serialize;
 use simulation::{BuildError, Simulation, build};
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 use thiserror::Error;
 use vocabulary::{LawKind, math};
 
-/// Gains of every follower, the same for distance and bearing.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Gains {
-    /// 1/s.
-    pub k: f64,
-    /// m/s² and rad/s².
-    pub beta: f64,
-    /// 1/m and 1/rad.
-    pub slope: f64,
-    /// s.
-    pub epsilon: f64,
+/// A number that is searched, of every follower the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Knob {
+    /// What it is called where it is written.
+    pub name: String,
+    /// Least and largest value.
+    pub bounds: [f64; 2],
+    /// Whether equal steps are equal ratios.
+    pub logarithmic: bool,
+    /// Where the search begins.
+    pub start: f64,
 }
 
 /// One run with some gains.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trial {
-    /// What was tried.
+    /// What was tried, by name: `k` in 1/s, `beta` in m/s² and rad/s², `slope` in 1/m and 1/rad and `epsilon` in s, or the
+    /// parameters of a custom law.
     #[serde(flatten)]
-    pub gains: Gains,
+    pub gains: BTreeMap<String, f64>,
     /// What it cost; less is better.
     pub cost: f64,
     /// Largest |error| of any edge in the second half of the run, [m, rad].
@@ -48,53 +50,137 @@ pub enum TuneError {
     /// The scene cannot run.
     #[error(transparent)]
     Build(#[from] BuildError),
-    /// Nobody follows by output feedback.
-    #[error("no robot of the scene follows by `output-feedback`: there are no such gains to find")]
+    /// Nobody follows by output feedback or by a custom law with parameters.
+    #[error(
+        "no robot of the scene follows by `output-feedback`, or by a custom law with parameters: there are no such gains to find"
+    )]
     NothingToTune,
 }
 
-/// Bounds of the search: what has been seen to run on vehicles from 1/10 scale to full size.
-const BOUNDS: [[f64; 2]; 4] = [[0.3, 10.0], [0.05, 10.0], [1.0, 40.0], [0.002, 0.2]];
-/// First steps of the search, as a factor.
-const FIRST_STEP: f64 = 1.6;
-/// Where the search begins besides the scene's own gains: from cautious to very cautious.
-const STARTS: [Gains; 2] = [
-    Gains { k: 2.0, beta: 1.5, slope: 8.0, epsilon: 0.02 },
-    Gains { k: 1.0, beta: 0.5, slope: 5.0, epsilon: 0.05 },
+/// The gains of output feedback with the bounds of their search: what has been seen to run on vehicles from 1/10 scale to
+/// full size; and where the search begins besides the scene's own, from cautious to very cautious.
+const GAINS: [(&str, [f64; 2], [f64; 2]); 4] = [
+    ("k", [0.3, 10.0], [2.0, 1.0]),
+    ("beta", [0.05, 10.0], [1.5, 0.5]),
+    ("slope", [1.0, 40.0], [8.0, 5.0]),
+    ("epsilon", [0.002, 0.2], [0.02, 0.05]),
 ];
+/// First steps of the search, as a factor, and as a share of a range.
+const FIRST_STEP: f64 = 1.6;
+const FIRST_SHARE: f64 = 0.15;
 /// What a contact costs, and a robot that cannot drive any more.
 const DISASTER: f64 = 100.0;
 
-impl Gains {
-    /// Those of the first follower by output feedback.
-    fn of(scene: &Scene) -> Option<Self> {
-        let mut followers = scene.followers().map(|(_, follow)| follow);
-        let follow = followers.find(|follow| follow.law.built_in() == Some(LawKind::OutputFeedback))?;
-        let (law, epsilon) = (&follow.law, follow.observer.epsilon[0]);
-        Some(Self { k: law.k[0], beta: law.beta[0], slope: law.slope[0], epsilon })
+/// What is searched, and where from.
+struct Search<'a> {
+    /// The law whose parameters are searched; the gains of output feedback where there is none.
+    law: Option<&'a WrittenLaw>,
+    knobs: Vec<Knob>,
+    /// The scene's own values, then others.
+    starts: Vec<Vec<f64>>,
+}
+
+impl<'a> Search<'a> {
+    /// Of the first follower by output feedback or by a custom law.
+    fn of(scene: &'a Scene) -> Option<Self> {
+        let tuned = |follow: &&Follow| match follow.law.custom() {
+            Some(law) => !law.declaration().parameters.is_empty(),
+            None => follow.law.kind == LawKind::OutputFeedback,
+        };
+        let follow = scene.followers().map(|(_, follow)| follow).find(tuned)?;
+        Some(follow.law.custom().map_or_else(|| Self::built_in(follow), |law| Self::custom(follow, law)))
     }
 
-    fn give(self, scene: &mut Scene) {
+    /// The parameters of a custom law, within the ranges that it declares.
+    fn custom(follow: &Follow, law: &'a WrittenLaw) -> Self {
+        let values = follow.law.values();
+        let knob = |(own, start): (&laws::Parameter, &f64)| Knob {
+            name: own.name.clone(),
+            bounds: own.range,
+            logarithmic: own.scale == laws::Scale::Logarithmic,
+            start: *start,
+        };
+        let knobs = law.declaration().parameters.iter().zip(&values).map(knob).collect();
+        Self { law: Some(law), knobs, starts: vec![values] }
+    }
+
+    /// The gains of output feedback.
+    fn built_in(follow: &Follow) -> Self {
+        let own = [follow.law.k[0], follow.law.beta[0], follow.law.slope[0], follow.observer.epsilon[0]];
+        let knob = |((name, bounds, _), start): (&(&str, [f64; 2], _), f64)| Knob {
+            name: (*name).to_owned(),
+            bounds: *bounds,
+            logarithmic: true,
+            start,
+        };
+        let knobs = GAINS.iter().zip(own).map(knob).collect();
+        let others = [0, 1].map(|which| GAINS.iter().map(|(.., starts)| starts[which]).collect());
+        Self { law: None, knobs, starts: std::iter::once(own.to_vec()).chain(others).collect() }
+    }
+
+    fn give(&self, values: &[f64], scene: &mut Scene) {
         scene.for_every_robot(|robot| {
-            if let Role::Follow(follow) = &mut robot.role {
-                follow.law.k = [self.k; 2];
-                follow.law.beta = [self.beta; 2];
-                follow.law.slope = [self.slope; 2];
-                follow.observer.epsilon = [self.epsilon; 2];
-                // It is ε that is searched, with measurements too.
-                follow.observer.adaptive = false;
+            let Role::Follow(follow) = &mut robot.role else { return };
+            match (self.law, values) {
+                (Some(law), _) if follow.law.custom() == Some(law) => {
+                    let named = self.knobs.iter().map(|knob| knob.name.clone()).zip(values.iter().copied());
+                    follow.law.parameters.extend(named);
+                }
+                (None, [k, beta, slope, epsilon]) => {
+                    follow.law.k = [*k; 2];
+                    follow.law.beta = [*beta; 2];
+                    follow.law.slope = [*slope; 2];
+                    follow.observer.epsilon = [*epsilon; 2];
+                    // It is ε that is searched, with measurements too.
+                    follow.observer.adaptive = false;
+                }
+                _ => {}
             }
         });
     }
 
-    fn logarithms(self) -> [f64; 4] {
-        let values = [self.k, self.beta, self.slope, self.epsilon];
-        [0, 1, 2, 3].map(|i| math::ln(values[i].clamp(BOUNDS[i][0], BOUNDS[i][1])))
+    /// Runs the scene with some values.
+    fn trial(&self, scene: &Scene, values: &[f64]) -> Result<Trial, BuildError> {
+        let mut scene = scene.clone();
+        self.give(values, &mut scene);
+        let mut simulation = Simulation::new(build(&scene)?);
+        let mut metrics = MetricsBuilder::new(simulation.fleet(), scene.judging());
+        while let Some(record) = simulation.next_record() {
+            metrics.push(record);
+        }
+        let metrics = metrics.finish();
+        let largest = |channel: usize| {
+            metrics.edges.iter().map(|edge| edge.late_peak_error[channel]).fold(0.0, f64::max)
+        };
+        Ok(Trial {
+            gains: self.knobs.iter().map(|knob| knob.name.clone()).zip(values.iter().copied()).collect(),
+            cost: cost(&metrics),
+            late_error: [largest(0), largest(1)],
+            limited: metrics.edges.iter().map(|edge| edge.limited).fold(0.0, f64::max),
+            contacts: metrics.contacts,
+        })
+    }
+}
+
+impl Knob {
+    /// The value as the search sees it: its logarithm, or its share of the range.
+    fn seen(&self, value: f64) -> f64 {
+        let [low, high] = self.bounds;
+        let value = value.clamp(low, high);
+        if self.logarithmic { math::ln(value) } else { (value - low) / (high - low).max(f64::MIN_POSITIVE) }
     }
 
-    fn from_logarithms(values: &[f64]) -> Self {
-        let at = |i: usize| values.get(i).map_or(1.0, |x| math::exp(*x)).clamp(BOUNDS[i][0], BOUNDS[i][1]);
-        Self { k: at(0), beta: at(1), slope: at(2), epsilon: at(3) }
+    fn value(&self, seen: f64) -> f64 {
+        let [low, high] = self.bounds;
+        if self.logarithmic {
+            math::exp(seen).clamp(low, high)
+        } else {
+            (low + seen * (high - low)).clamp(low, high)
+        }
+    }
+
+    fn first_step(&self) -> f64 {
+        if self.logarithmic { math::ln(FIRST_STEP) } else { FIRST_SHARE }
     }
 }
 
@@ -102,78 +188,61 @@ impl Gains {
 /// What comes back is that first trial and the best of all.
 ///
 /// # Errors
-/// [`TuneError`] where the scene cannot run or has no follower by output feedback.
+/// [`TuneError`] where the scene cannot run or has no follower with gains to be found.
 pub fn tune(scene: &Scene, most: usize, look: impl FnMut(&Trial) -> bool) -> Result<[Trial; 2], TuneError> {
-    let own = Gains::of(scene).ok_or(TuneError::NothingToTune)?;
-    let first = trial(scene, own)?;
-    let search = RefCell::new(Search { best: first, look, on: true });
-    search.borrow_mut().take_in(first);
+    let search = Search::of(scene).ok_or(TuneError::NothingToTune)?;
+    let first = search.trial(scene, &search.starts[0])?;
+    let seen = RefCell::new(Seen { best: first.clone(), look, on: true });
+    seen.borrow_mut().take_in(first.clone());
     let cost = |at: &[f64], (): &mut ()| {
         // Once nobody wants to go on, every other place is as bad, and the search ends by itself.
-        if !search.borrow().on {
+        if !seen.borrow().on {
             return f64::MAX;
         }
-        let Ok(trial) = trial(scene, Gains::from_logarithms(at)) else { return f64::MAX };
-        search.borrow_mut().take_in(trial);
-        trial.cost
+        let values: Vec<f64> = search.knobs.iter().zip(at).map(|(knob, at)| knob.value(*at)).collect();
+        let Ok(trial) = search.trial(scene, &values) else { return f64::MAX };
+        let cost = trial.cost;
+        seen.borrow_mut().take_in(trial);
+        cost
     };
-    let bounds = BOUNDS.map(|[low, high]| (math::ln(low), math::ln(high)));
+    let bounds: Vec<(f64, f64)> =
+        search.knobs.iter().map(|knob| (knob.seen(knob.bounds[0]), knob.seen(knob.bounds[1]))).collect();
+    let steps: Vec<f64> = search.knobs.iter().map(Knob::first_step).collect();
     let tolerances = StopTols { xtol_rel: 1e-2, ..StopTols::default() };
-    let starts = [&[own][..], &STARTS].concat();
-    for start in &starts {
+    for start in &search.starts {
         let no_constraints: [fn(&[f64], &mut ()) -> f64; 0] = [];
-        let (first_step, share) = (RhoBeg::All(math::ln(FIRST_STEP)), (most / starts.len()).max(1));
+        let share = (most / search.starts.len()).max(1);
+        let from: Vec<f64> = search.knobs.iter().zip(start).map(|(knob, value)| knob.seen(*value)).collect();
         // It ends by its tolerance or by the number of trials; the best that was seen counts either way.
         let _ = minimize(
             cost,
-            &start.logarithms(),
+            &from,
             &bounds,
             &no_constraints,
             (),
             share,
-            first_step,
+            RhoBeg::Set(steps.clone()),
             Some(tolerances.clone()),
         );
     }
-    let best = search.borrow().best;
+    let best = seen.borrow().best.clone();
     Ok([first, best])
 }
 
 /// What has been seen so far.
-struct Search<L> {
+struct Seen<L> {
     best: Trial,
     look: L,
     on: bool,
 }
 
-impl<L: FnMut(&Trial) -> bool> Search<L> {
+impl<L: FnMut(&Trial) -> bool> Seen<L> {
     fn take_in(&mut self, trial: Trial) {
+        self.on &= (self.look)(&trial);
         if trial.cost < self.best.cost {
             self.best = trial;
         }
-        self.on &= (self.look)(&trial);
     }
-}
-
-/// Runs the scene with some gains.
-fn trial(scene: &Scene, gains: Gains) -> Result<Trial, BuildError> {
-    let mut scene = scene.clone();
-    gains.give(&mut scene);
-    let mut simulation = Simulation::new(build(&scene)?);
-    let mut metrics = MetricsBuilder::new(simulation.fleet(), scene.judging());
-    while let Some(record) = simulation.next_record() {
-        metrics.push(record);
-    }
-    let metrics = metrics.finish();
-    let largest =
-        |channel: usize| metrics.edges.iter().map(|edge| edge.late_peak_error[channel]).fold(0.0, f64::max);
-    Ok(Trial {
-        gains,
-        cost: cost(&metrics),
-        late_error: [largest(0), largest(1)],
-        limited: metrics.edges.iter().map(|edge| edge.limited).fold(0.0, f64::max),
-        contacts: metrics.contacts,
-    })
 }
 
 /// Less is better.
@@ -208,9 +277,28 @@ mod tests {
             true
         })
         .expect("gains");
-        assert_eq!(first.gains, Gains { k: 5.0, beta: 5.0, slope: 24.53, epsilon: 0.02 });
+        let own = [("k", 5.0), ("beta", 5.0), ("slope", 24.53), ("epsilon", 0.02)];
+        assert_eq!(first.gains, own.map(|(name, value)| (name.to_owned(), value)).into());
         assert!(first.late_error[0] > 0.05 && best.late_error[0] < 0.04, "{first:?} {best:?}");
         assert!(best.cost < 0.5 * first.cost && (4..=40).contains(&trials), "{trials} trials");
+    }
+
+    #[test]
+    fn parameters_of_a_custom_law_are_searched_within_their_ranges() {
+        let law = "knows rates\nparameter k = 0.4 [1/s] in 0.2 .. 6\nparameter d = 0.5 in 0.1 .. 2\n\
+            let e = (wanted.distance - leader.distance, wrap(wanted.bearing - leader.bearing))\n\
+            let b = k^2 * e - 2 * d * k * leader.rates\nlet c = cos(leader.view_angle)\n\
+            let s = sin(leader.view_angle)\nlet a = leader.distance * b.y\n\
+            command = c * b.x - s * a, (s * b.x + c * a) / own.speed\n";
+        let text = format!(
+            "{}[law]\ntext = {law:?}\n[[robots]]\nname = \"b\"\npose = [-2, -1, 0]\nspeed = 0.8\nleader = \"a\"\n\
+             distance = 2.0\nbearing = \"-135 deg\"\n",
+            HEAD.replace("vehicle = \"car\"\n", "")
+        );
+        let [first, best] = tune(&scene(&text), 40, |_| true).expect("gains");
+        assert_eq!((first.gains["k"], first.gains["d"]), (0.4, 0.5));
+        assert!(best.cost < 0.5 * first.cost, "{first:?} {best:?}");
+        assert!((0.2..=6.0).contains(&best.gains["k"]) && (0.1..=2.0).contains(&best.gains["d"]));
     }
 
     #[test]

@@ -23,6 +23,8 @@ const PLACES: [[f64; 2]; 8] = [
 ];
 /// How far ahead of the shown time an event is set while the run plays, s of the clock on the wall.
 const AHEAD: f64 = 0.3;
+/// The law of a robot that gets a second leader by hand.
+const TWO_LEADERS: &str = "two-distances";
 /// Tolerance of a mirror image, m and rad.
 const ALIKE: [f64; 2] = [0.05, 0.09];
 
@@ -291,6 +293,7 @@ impl AppState {
             record.as_ref().and_then(|m| m.snapshot.robots.get(robot)).map_or(start, |r| r.motion.pose)
         };
         let now = Relative::between(pose(leader, ahead.pose), pose(follower, behind.pose));
+        let looks_at = behind.role.follow().map_or(1, |follow| follow.law.leaders());
         let has = behind.role.follow().map(|follow| follow.leaders.clone()).filter(|_| adds);
         if let Some(has) = has.filter(|has| !has.include(&ahead.name)) {
             let away = |leader: &scene::Leader| {
@@ -311,7 +314,12 @@ impl AppState {
                 for key in ["leader", "distance", "bearing", "leaders"] {
                     text.remove(&format!("robots.{name}.{key}"))?;
                 }
-                text.set(&format!("robots.{name}.leaders"), &format!("[{}]", all.join(", ")))
+                text.set(&format!("robots.{name}.leaders"), &format!("[{}]", all.join(", ")))?;
+                // A law for two comes with the program.
+                if all.len() == 2 && looks_at != 2 {
+                    text.set(&format!("robots.{name}.law.file"), TWO_LEADERS)?;
+                }
+                Ok(())
             });
             return;
         }
@@ -322,6 +330,11 @@ impl AppState {
                 text.remove(&format!("robots.{name}.path"))?;
             }
             text.remove(&format!("robots.{name}.leaders"))?;
+            if looks_at != 1 {
+                for key in ["file", "text", "parameters"] {
+                    text.remove(&format!("robots.{name}.law.{key}"))?;
+                }
+            }
             for (key, value) in [
                 ("leader", format!("{ahead:?}")),
                 ("distance", toml_number((now.distance * 20.0).round() / 20.0)),

@@ -512,14 +512,12 @@ impl AppState {
         let Some(fleet) = self.fleet() else { return };
         let named = |name: &String| fleet.robots.iter().position(|member| member.name == *name);
         let robot = self.chosen.as_ref().and_then(named);
-        let mut own = robot.into_iter().flat_map(|robot| fleet.edges_of(robot));
-        let first = own.next();
+        let own: Vec<usize> = robot.into_iter().flat_map(|robot| fleet.edges_of(robot)).collect();
         let edge = match self.selection {
             // One with several leaders keeps that of them.
-            Selection::Edge(edge) => own.find(|other| *other == edge).or(first),
-            _ => first,
+            Selection::Edge(edge) if own.contains(&edge) => Some(edge),
+            _ => own.first().copied(),
         };
-        drop(own);
         self.selection = match (robot, edge, self.selection) {
             (Some(_), Some(edge), Selection::Edge(_)) => Selection::Edge(edge),
             (Some(robot), ..) => Selection::Robot(robot),

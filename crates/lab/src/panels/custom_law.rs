@@ -139,24 +139,32 @@ fn row(ui: &mut Ui, parameter: &Parameter, value: f64, out: &mut Vec<Action>) {
     });
 }
 
-/// The text with line numbers, mistakes underlined, and what is wrong below.
+/// What is to be said of an edited text, and whether it is a fault.
+fn remarks(edit: &LawEdit) -> Vec<(String, bool)> {
+    let mut all: Vec<_> =
+        edit.mistakes.iter().take(LISTED).map(|mistake| (mistake.to_string(), true)).collect();
+    if let Some(more) = edit.mistakes.len().checked_sub(LISTED).filter(|more| *more > 0) {
+        all.push((format!("and {more} more"), true));
+    }
+    all.extend(
+        edit.refusal.iter().filter_map(|refusal| refusal.lines().next()).map(|line| (line.to_owned(), true)),
+    );
+    if all.is_empty() {
+        all.push(("Takes hold as you type".to_owned(), false));
+    }
+    all
+}
+
+/// The text with line numbers, mistakes underlined, and what is wrong below: there it does not move the text.
 fn editor(ui: &mut Ui, edit: &LawEdit, out: &mut Vec<Action>) {
     let font = egui::TextStyle::Monospace.resolve(ui.style());
     let mut text = edit.text.clone();
-    if edit.mistakes.is_empty() && edit.refusal.is_none() {
-        ui.weak("Takes hold as you type");
-    }
-    for mistake in edit.mistakes.iter().take(LISTED) {
-        ui.colored_label(ui.visuals().error_fg_color, mistake.to_string());
-    }
-    if let Some(more) = edit.mistakes.len().checked_sub(LISTED).filter(|more| *more > 0) {
-        ui.colored_label(ui.visuals().error_fg_color, format!("and {more} more"));
-    }
-    if let Some(refusal) = &edit.refusal {
-        ui.colored_label(ui.visuals().error_fg_color, refusal.lines().next().unwrap_or_default());
-    }
+    let remarks = remarks(edit);
+    let below =
+        remarks.len() as f32 * (ui.text_style_height(&egui::TextStyle::Body) + ui.spacing().item_spacing.y);
+    let high = (ui.available_height() - below - ui.spacing().item_spacing.y).max(60.0);
     let lines = text.lines().count() + usize::from(text.ends_with('\n'));
-    ScrollArea::both().id_salt("law text").auto_shrink([false, true]).show(ui, |ui| {
+    ScrollArea::both().id_salt("law text").auto_shrink([false, false]).max_height(high).show(ui, |ui| {
         ui.horizontal_top(|ui| {
             ui.spacing_mut().item_spacing.x = 4.0;
             let numbers: Vec<String> = (1..=lines.max(1)).map(|line| format!("{line:>3}")).collect();
@@ -172,6 +180,8 @@ fn editor(ui: &mut Ui, edit: &LawEdit, out: &mut Vec<Action>) {
                 ui.fonts_mut(|fonts| fonts.layout_job(job))
             };
             let field = TextEdit::multiline(&mut text)
+                // It keeps the keyboard whatever is said around it.
+                .id(egui::Id::unique("text of the law"))
                 .code_editor()
                 .desired_width(f32::INFINITY)
                 .desired_rows(lines.max(4))
@@ -188,6 +198,10 @@ fn editor(ui: &mut Ui, edit: &LawEdit, out: &mut Vec<Action>) {
             }
         });
     });
+    for (remark, fault) in remarks {
+        let colour = if fault { ui.visuals().error_fg_color } else { ui.visuals().weak_text_color() };
+        ui.add(egui::Label::new(RichText::new(remark).color(colour)).truncate());
+    }
 }
 
 /// A text in which comments are weak and mistakes underlined.

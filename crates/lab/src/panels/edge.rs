@@ -62,26 +62,24 @@ fn place(ui: &mut Ui, app_state: &AppState, edge: usize, out: &mut Vec<Action>) 
         symbols::DISTANCE.label(ui);
         let drag = DragValue::new(&mut new_distance).speed(0.02).range(0.05..=1000.0).max_decimals(3);
         let drag = drag.custom_formatter(|value, _| format!("{} m", fixed(value, 2))).custom_parser(number);
-        match wanted.distance {
-            None => free(ui),
-            Some(_) => {
-                let response = ui.add(drag);
-                named(&response, new_distance, symbols::DISTANCE.name);
-                released(&response, out);
-            }
+        if wanted.distance.is_some() {
+            let response = ui.add(drag);
+            named(&response, new_distance, symbols::DISTANCE.name);
+            released(&response, out);
+        } else {
+            free(ui);
         }
         ui.weak(state.map_or_else(String::new, |s| format!("is {} m", fixed(s.relative.distance, 3))));
         ui.end_row();
         symbols::BEARING.label(ui);
         let drag = DragValue::new(&mut new_degrees).speed(0.5).range(-180.0..=180.0).max_decimals(2);
         let drag = drag.custom_formatter(|value, _| format!("{}°", fixed(value, 1))).custom_parser(number);
-        match wanted.bearing {
-            None => free(ui),
-            Some(_) => {
-                let response = ui.add(drag);
-                named(&response, new_degrees, symbols::BEARING.name);
-                released(&response, out);
-            }
+        if wanted.bearing.is_some() {
+            let response = ui.add(drag);
+            named(&response, new_degrees, symbols::BEARING.name);
+            released(&response, out);
+        } else {
+            free(ui);
         }
         ui.weak(state.map_or_else(String::new, |s| {
             let bearing = wrap(s.relative.bearing + s.behind);

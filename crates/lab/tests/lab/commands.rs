@@ -287,20 +287,6 @@ fn nobody_follows_in_a_circle() {
 }
 
 #[test]
-fn a_second_leader_needs_a_law_for_two() {
-    let mut app_state = app_state(THREE, 40);
-    let before = text(&app_state);
-    app_state.act(&Action::Connect { leader: 1, follower: 2, adds: true });
-    let notice = app_state.notice.take().expect("a notice");
-    assert!(notice.contains("`right` has 2 leaders, and its law looks at one"), "{notice}");
-    assert!(text(&app_state) == before && app_state.requests.is_empty());
-    // One that it has already is no second: it takes up its present place.
-    app_state.act(&Action::Connect { leader: 0, follower: 2, adds: true });
-    assert_eq!(app_state.notice, None);
-    assert!(text(&app_state) != before);
-}
-
-#[test]
 fn a_lead_robot_becomes_a_follower_where_it_is() {
     let second = "\n[[robots]]\nname = \"second\" # on its own\npose = [3.0, 4.0, 0.0]\npath = { kind = \"constant\", speed = 1.0 }\n";
     let mut app_state = app_state(&format!("{THREE}{second}"), 40);

@@ -8,6 +8,7 @@ mod edits;
 mod events;
 mod history;
 mod laws;
+mod leaders;
 mod links;
 mod pacing;
 mod panels;

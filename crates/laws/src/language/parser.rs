@@ -222,6 +222,9 @@ impl<'a> Parser<'a, '_> {
             }
             "knows" => {
                 self.at += 1;
+                if law.knows != Knowledge::Output {
+                    self.mistake(at, "what the law knows is said twice");
+                }
                 law.knows = match self.kind() {
                     TokenKind::Name("motion") => Knowledge::Motion,
                     TokenKind::Name("rates") => Knowledge::Rates,

@@ -280,6 +280,11 @@ fn statements_do_what_they_say() {
         ("parameter k = 2 in 0 .. 9\nfunction f(x) = k * x\nlet a = f(4)", vec![8.0]),
         ("function f(x) { let s = 0; repeat 5 { s = s + x }; s }\nlet a = f(2)", vec![10.0]),
         ("let a = 3 > 2\nlet b = a and not a", vec![1.0, 0.0]),
+        // What is not a number is neither less nor more.
+        (
+            "let z = time - 1.5 [s]\nlet a = if z / z < 1 or z / z >= 1 { 1 } else if z / z <= 1 { 2 } else { 3 }",
+            vec![0.0, 3.0],
+        ),
         ("let a = (1 +\n 2) # one\n\n  * 3", vec![9.0]),
         ("let a = 1\n  + 2\n  - 3\nlet b = 4", vec![0.0, 4.0]),
         ("let a = if true {\n let c = 2\n\n c\n}\nelse {\n 3\n}", vec![2.0]),
@@ -742,6 +747,7 @@ fn what_cannot_be_read_is_said() {
         ),
         ("leaders 5", "1:9-1:10 here should stand how many leaders there are, 1 to 4, not `5`"),
         ("leaders 1\nleaders 1", "2:1-2:8 the number of leaders is said twice"),
+        ("knows rates\nknows motion", "2:1-2:6 what the law knows is said twice"),
         ("knows everything", "1:7-1:17 here should stand `rates` or `motion`, not `everything`"),
         ("parameter k = 5", "1:11-1:12 a parameter has a range for its slider: `in 0.1 .. 20`"),
         ("parameter k = 5 in 6 .. 9", "1:15-1:16 5 is not in the range 6 .. 9"),

@@ -112,21 +112,21 @@ impl<'a> Lexer<'a> {
             }
             '#' => self.at += rest.find('\n').unwrap_or(rest.len()),
             '"' => {
-                let line = rest.find(['\n', '\r']).unwrap_or(rest.len());
-                if let Some(length) = rest[1..line].find('"') {
-                    self.push(TokenKind::Quoted(&rest[1..=length]), length + 2);
-                } else {
-                    mistakes.add(Stretch { from: self.at, to: self.at + line }, "the second `\"` is missing");
-                    self.push(TokenKind::Quoted(&rest[1..line]), line);
+                let length = rest[1..].find(['"', '\n', '\r']).map_or(rest.len(), |length| length + 1);
+                let is_closed = rest[length..].starts_with('"');
+                if !is_closed {
+                    let at = Stretch { from: self.at, to: self.at + length };
+                    mistakes.add(at, "the second `\"` is missing");
                 }
+                self.push(TokenKind::Quoted(&rest[1..length]), length + usize::from(is_closed));
             }
             '[' => {
-                let line = rest.find(['\n', '\r']).unwrap_or(rest.len());
-                if let Some(length) = rest[..line].find(']') {
+                let length = rest.find([']', '\n', '\r']).unwrap_or(rest.len());
+                if rest[length..].starts_with(']') {
                     self.push(TokenKind::Unit(&rest[1..length]), length + 1);
                 } else {
                     mistakes.add(one, "the `]` behind the unit is missing");
-                    self.push(TokenKind::Unit("-"), line);
+                    self.push(TokenKind::Unit("-"), length);
                 }
             }
             '0'..='9' => self.number(mistakes),

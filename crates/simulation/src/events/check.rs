@@ -43,8 +43,8 @@ pub(super) fn refused(
     if graph.comes_after(leader, robot) {
         return because(Refusal::Cycle);
     }
-    let idle = (0..run.fleet.robots.len()).filter(|other| !matches!(duty(*other), Duty::Drives));
-    if idle.into_iter().any(|other| graph.comes_after(leader, other)) {
+    let mut idle = (0..run.fleet.robots.len()).filter(|other| !matches!(duty(*other), Duty::Drives));
+    if idle.any(|other| graph.comes_after(leader, other)) {
         return because(Refusal::Leaderless);
     }
     let robots = &run.plant.world().snapshot().robots;

@@ -49,6 +49,30 @@ fn mistakes_are_listed_with_their_places() {
     assert!(!says(&panel, "Takes hold"));
 }
 
+/// A mistake on the way to what is meant must not take the keyboard away.
+#[test]
+fn the_text_keeps_the_keyboard_through_mistakes() {
+    let mut panel = panel(custom(2), custom_law::text);
+    click(&mut panel, Role::MultilineTextInput, "Text of the law");
+    let typed = |panel: &mut super::Panel, text: &str| {
+        panel.event(eframe::egui::Event::Text(text.to_owned()));
+        let actions = asked(panel);
+        let Some(Action::EditLaw(edited)) = actions.first() else { panic!("{actions:?}") };
+        let edited = edited.clone();
+        assert!(panel.state_mut().app_state.act(&actions[0]));
+        panel.run();
+        edited
+    };
+    for (text, mistaken) in [("x", true), ("y", true), ("(", true)] {
+        let edited = typed(&mut panel, text);
+        assert!(edited.contains(text));
+        assert_eq!(
+            panel.state().app_state.law_edit().is_some_and(|edit| !edit.mistakes.is_empty()),
+            mistaken
+        );
+    }
+}
+
 #[test]
 fn laws_of_the_paper_those_that_ship_and_a_new_one_can_be_chosen() {
     for (entry, choice) in [
