@@ -96,8 +96,9 @@ fn a_module_is_told_by_its_bytes_and_stands_in_the_scene_packed() {
     assert!(sets.iter().any(|set| set.starts_with("robots.follower-1.law.module=")), "{sets:?}");
     assert_eq!(parse("", &sets).expect("a scene").robots, alone.robots);
     // What is set last chooses.
-    let kind = Scene::parse(&edited.text(), "t.toml", &["law.kind=full-state".parse().expect("an override")]);
-    assert_eq!(law(&kind.expect("a scene").scene, "follower-1").built_in(), Some(LawKind::FullState));
+    let set = ["law.kind=full-state", "law.parameters={}"].map(|set| set.parse().expect("an override"));
+    let kind = Scene::parse(&edited.text(), "t.toml", &set).expect("a scene").scene;
+    assert_eq!(law(&kind, "follower-1").built_in(), Some(LawKind::FullState));
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod common;
 mod dataset;
 mod figures;
 mod films;
+mod law_modules;
 mod laws;
 mod links;
 mod logs;

@@ -32,7 +32,7 @@ fn line(text: &str) -> String {
 pub(super) fn declared(text: &str, continuous: bool) -> Result<Declaration, Vec<String>> {
     let json: Value = serde_json::from_str(text)
         .map_err(|error| vec![format!("its declaration is not JSON: {}", shown(&error.to_string()))])?;
-    let mut reader = Reader { mistakes: vec![], names: vec![] };
+    let mut reader = DeclarationReader { mistakes: vec![], names: vec![] };
     let declaration = reader.declaration(&json, continuous);
     match declaration {
         Some(declaration) if reader.mistakes.is_empty() => Ok(declaration),
@@ -41,13 +41,13 @@ pub(super) fn declared(text: &str, continuous: bool) -> Result<Declaration, Vec<
 }
 
 /// Reads on behind a mistake, so that several are told at once.
-struct Reader<'a> {
+struct DeclarationReader<'a> {
     mistakes: Vec<String>,
     /// Names that are taken.
     names: Vec<&'a str>,
 }
 
-impl<'a> Reader<'a> {
+impl<'a> DeclarationReader<'a> {
     fn mistake(&mut self, at: &str, what: impl AsRef<str>) {
         if self.mistakes.len() < MISTAKES_MAX {
             let at = if at.is_empty() { "it".to_owned() } else { format!("`{at}`") };

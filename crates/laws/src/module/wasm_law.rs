@@ -70,7 +70,9 @@ impl WasmLaw {
         }
         let one = |error: Error| vec![told(&error)];
         let engine = Engine::new(&config());
-        let module = Module::new(&engine, bytes)
+        // First all of it: where code stands behind the end of a function, translation would panic before validation.
+        let module = Module::validate(&engine, bytes).and_then(|()| Module::new(&engine, bytes));
+        let module = module
             .map_err(|error| vec![format!("it is not a module that can run here: {}", told(&error))])?;
         let linker = offered(&engine).map_err(one)?;
         let mut mistakes = exports_missing(&module);
@@ -158,14 +160,14 @@ impl WasmLaw {
     }
 
     /// Where the parts of the region begin, with `out` numbers shown or derived.
-    fn layout(&self, out: usize) -> Layout {
+    fn layout(&self, out: usize) -> RegionLayout {
         let Declaration { leaders, parameters, memory, .. } = &self.declaration;
         let per_leader = INPUTS.iter().filter(|(kind, ..)| kind.is_per_leader()).count();
         let parameters_at = INPUTS.len() - per_leader + leaders * per_leader;
         let memory_at = parameters_at + parameters.len();
         let out_at = memory_at + memory.len();
         let command = out_at + out;
-        Layout { parameters: parameters_at, memory: memory_at, out: out_at, command, end: command + 2 }
+        RegionLayout { parameters: parameters_at, memory: memory_at, out: out_at, command, end: command + 2 }
     }
 
     /// Calls an exported function of so many arguments over the region, and returns the numbers there.
@@ -175,7 +177,7 @@ impl WasmLaw {
         arguments: impl Fn([u32; 5]) -> P,
         input: &Input<'_>,
         [parameters, memory]: [&[f64]; 2],
-        layout: &Layout,
+        layout: &RegionLayout,
     ) -> Result<Vec<f64>, Fault> {
         let called = || -> Result<Vec<f64>, Error> {
             let mut running = self.instantiated(input.noise)?;
@@ -240,7 +242,7 @@ impl Running {
 }
 
 /// Where the parts of a region begin, in numbers.
-struct Layout {
+struct RegionLayout {
     parameters: usize,
     memory: usize,
     out: usize,
