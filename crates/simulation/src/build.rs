@@ -56,6 +56,10 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         camera_model: scene.vision.camera_model(),
     };
     let members: Vec<RobotInfo> = scene.robots.iter().map(member).collect();
+    let has_laws = scenes_of(scene).any(|scene| {
+        scene.followers().any(|(_, follow)| follow.law.custom().is_some())
+            || scene.joining().iter().any(|(_, follow)| follow.law.custom().is_some())
+    });
     Ok(Setup {
         sensor_config: sensor_config(scene, &followers, &edges, &members, &stage),
         safety_config: safety_config(scene, &members, &stage),
@@ -79,11 +83,10 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
                 vec![]
             },
             has_sensors: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
-            has_laws: scenes_of(scene).any(|scene| {
-                scene.followers().any(|(_, follow)| follow.law.custom().is_some())
-                    || scene.joining().iter().any(|(_, follow)| follow.law.custom().is_some())
-            }),
-            has_events: !scene.events.is_empty() || scene.hand_over.held_up.is_some(),
+            has_laws,
+            has_events: !scene.events.is_empty() || scene.hand_over.held_up.is_some()
+                // A law that breaks off is an event.
+                || has_laws,
             has_safety: scene.robots.iter().any(|robot| robot.proximity.range.is_some()),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),
