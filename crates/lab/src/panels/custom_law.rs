@@ -160,8 +160,12 @@ fn editor(ui: &mut Ui, edit: &LawEdit, out: &mut Vec<Action>) {
     let font = egui::TextStyle::Monospace.resolve(ui.style());
     let mut text = edit.text.clone();
     let remarks = remarks(edit);
-    let below =
-        remarks.len() as f32 * (ui.text_style_height(&egui::TextStyle::Body) + ui.spacing().item_spacing.y);
+    let body = egui::TextStyle::Body.resolve(ui.style());
+    let tall = |(remark, _): &(String, bool)| {
+        let galley = ui.painter().layout(remark.clone(), body.clone(), Color32::WHITE, ui.available_width());
+        galley.size().y + ui.spacing().item_spacing.y
+    };
+    let below: f32 = remarks.iter().map(tall).sum();
     let high = (ui.available_height() - below - ui.spacing().item_spacing.y).max(60.0);
     let lines = text.lines().count() + usize::from(text.ends_with('\n'));
     ScrollArea::both().id_salt("law text").auto_shrink([false, false]).max_height(high).show(ui, |ui| {
@@ -200,7 +204,7 @@ fn editor(ui: &mut Ui, edit: &LawEdit, out: &mut Vec<Action>) {
     });
     for (remark, fault) in remarks {
         let colour = if fault { ui.visuals().error_fg_color } else { ui.visuals().weak_text_color() };
-        ui.add(egui::Label::new(RichText::new(remark).color(colour)).truncate());
+        ui.add(egui::Label::new(RichText::new(remark).color(colour)).wrap());
     }
 }
 
