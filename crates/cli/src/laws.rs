@@ -174,9 +174,8 @@ fn tell(path: &Path, declaration: &Declaration) {
     for own in &declaration.parameters {
         let scale = if own.scale == Scale::Logarithmic { ", logarithmic" } else { "" };
         let [low, high] = own.range;
-        let unit = own.unit.to_string();
-        let text = format!("  {} = {} {unit}", own.name, own.default);
-        say(&format!("{:<24} {low} to {high}{scale}  {}", text.trim_end(), own.help));
+        let text = format!("  {} = {}{}", own.name, own.default, own.unit.behind());
+        say(&format!("{text:<24} {low} to {high}{scale}  {}", own.help));
     }
     let names = |all: &[laws::Quantity]| {
         let name = |own: &laws::Quantity| match own.unit.to_string() {
@@ -294,9 +293,8 @@ fn tell_end(law: &WrittenLaw, parameters: &[f64], args: &TestArgs, end: &LoopEnd
     let TestArgs { distance, bearing, speed, turn_rate, period, .. } = args;
     say(&format!("{}: {}", args.law.display(), law.declaration().title));
     let declared = law.declaration().parameters.iter().zip(parameters);
-    let values: Vec<String> = declared
-        .map(|(own, value)| format!("{} {value} {}", own.symbol, own.unit).trim_end().to_owned())
-        .collect();
+    let value = |(own, value): (&Parameter, &f64)| format!("{} {value}{}", own.symbol, own.unit.behind());
+    let values: Vec<String> = declared.map(value).collect();
     if !values.is_empty() {
         say(&values.join(" · "));
     }

@@ -54,6 +54,21 @@ pub struct Place {
     pub column: u32,
 }
 
+impl Place {
+    /// The byte of `text` that stands here; its length for a place behind its end.
+    pub fn byte_in(self, text: &str) -> usize {
+        // Places do not count the byte order mark.
+        let mark = text.len() - text.strip_prefix('\u{feff}').unwrap_or(text).len();
+        let line = self.line.saturating_sub(1) as usize;
+        let start = match line {
+            0 => mark,
+            _ => text.match_indices('\n').nth(line - 1).map_or(text.len(), |(at, _)| at + 1),
+        };
+        let within = text[start..].char_indices().nth(self.column.saturating_sub(1) as usize);
+        within.map_or(text.len(), |(at, _)| start + at)
+    }
+}
+
 /// Why a law gave no command.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {

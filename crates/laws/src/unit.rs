@@ -82,6 +82,12 @@ impl Unit {
         fits.then_some(Self { metre: metre as i16, second: second as i16, radian })
     }
 
+    /// It as it stands behind a number: with a space before it, or nothing.
+    pub fn behind(self) -> String {
+        let unit = self.to_string();
+        if unit.is_empty() { unit } else { format!(" {unit}") }
+    }
+
     /// The unit that `text` says, such as "m/s^2", "m/s²", "rad/s", "deg", "m^0.5 / s^1.5" or "-", with what one of it is in
     /// m, s and rad.
     ///

@@ -5,7 +5,7 @@ use crate::files::{read_bytes, text_of};
 use crate::packed::{Damage, unpack};
 use crate::text::{Form, Node, Reporter, Span, Value, form::Text, words::instead_of};
 use crate::types::{LawSource, Written, WrittenLaw};
-use laws::{Declaration, LawFile, Mistake, Place, SHIPPED_LAWS, is_module, read_module, shipped};
+use laws::{Declaration, LawFile, Mistake, SHIPPED_LAWS, is_module, read_module, shipped};
 use serde_json::{Value as Json, json};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -17,7 +17,7 @@ const LAW_TEXT: usize = 100_000;
 const PACKED_MODULE: usize = 1_500_000;
 
 /// Keys of which the one that is set last says which law a follower has.
-const LAW_CHOICE: [&str; 4] = ["kind", "file", "text", "module"];
+pub const LAW_CHOICE: [&str; 4] = ["kind", "file", "text", "module"];
 
 /// The keys of a table called `table` that lose their meaning where `key` is set.
 pub(crate) fn replaced_by(table: &str, key: &str) -> impl Iterator<Item = &'static str> {
@@ -43,29 +43,10 @@ impl Form for LawFileForm {
     fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Self::Out> {
         let name = reporter.expect(node.as_text(), node, || "the name of a law file".to_owned())?;
         let path = reporter.beside_scene(name);
-        // A shipped scene is the same wherever it runs.
-        if let Some(law) = shipped(name) {
-            return compiled(LawSource::Shipped(name.to_owned()), name.to_owned(), law.text, reporter)
-                .map(Some);
-        }
-        match read_law(&path) {
-            Ok(bytes) => {
-                reporter.files.push(path.clone());
-                let (source, origin) = (LawSource::File(name.to_owned()), path.display().to_string());
-                if is_module(&bytes) {
-                    let law = of_module(source, bytes);
-                    return law
-                        .map_err(|told| report_all(&told, &origin, node.span, reporter))
-                        .ok()
-                        .map(Some);
-                }
-                let text = text_of(bytes);
-                let text = text.map_err(|fault| report_all(&[fault], &origin, node.span, reporter)).ok()?;
-                compiled(source, origin, &text, reporter).map(Some)
-            }
-            Err(fault) => {
-                let hint = if path.exists() { String::new() } else { elsewhere(name, &path) };
-                reporter.report(node.span, format!("{}: {fault}{hint}", path.display()));
+        match open(name, &path, reporter) {
+            Ok(law) => law.map(Some),
+            Err(told) => {
+                report_all(&told, &path.display().to_string(), node.span, reporter);
                 None
             }
         }
@@ -146,24 +127,28 @@ impl Form for LawModuleForm {
 /// Everything that is wrong with the file.
 pub fn load_law(path: &Path) -> Result<WrittenLaw, Diagnostics> {
     let mut reporter = Reporter::new(Path::new(""));
-    let name = path.display().to_string();
-    let known = path.to_str().and_then(shipped);
-    let law = if let Some(law) = known {
-        compiled(LawSource::Shipped(name.clone()), name, law.text, &mut reporter)
-    } else {
-        let whole = |messages| Diagnostics::whole_file(path, messages);
-        let bytes = read_law(path).map_err(|fault| {
-            let known = SHIPPED_LAWS.iter().map(|law| law.name);
-            let hint = if path.exists() { String::new() } else { instead_of(&name, known) };
-            whole(vec![fault + &hint])
-        })?;
-        if is_module(&bytes) {
-            return of_module(LawSource::File(name), bytes).map_err(whole);
-        }
-        let text = text_of(bytes).map_err(|fault| whole(vec![fault]))?;
-        compiled(LawSource::File(name.clone()), name, &text, &mut reporter)
-    };
+    let law = open(&path.display().to_string(), path, &mut reporter);
+    let law = law.map_err(|told| Diagnostics::whole_file(path, told))?;
     law.ok_or_else(|| reporter.into_diagnostics())
+}
+
+/// The law that comes with the program under a name, else that of the file at `path`; `None` after reporting mistakes in its
+/// text, or else what is wrong with the whole file. What ships goes first: a shipped scene is the same wherever it runs.
+fn open(name: &str, path: &Path, reporter: &mut Reporter) -> Result<Option<WrittenLaw>, Vec<String>> {
+    if let Some(law) = shipped(name) {
+        return Ok(compiled(LawSource::Shipped(name.to_owned()), name.to_owned(), law.text, reporter));
+    }
+    let bytes = read_law(path).map_err(|fault| {
+        let hint = if path.exists() { String::new() } else { elsewhere(name, path) };
+        vec![fault + &hint]
+    })?;
+    reporter.files.push(path.to_owned());
+    let source = LawSource::File(name.to_owned());
+    if is_module(&bytes) {
+        return of_module(source, bytes).map(Some);
+    }
+    let text = text_of(bytes).map_err(|fault| vec![fault])?;
+    Ok(compiled(source, path.display().to_string(), &text, reporter))
 }
 
 /// The law of a module, or what is wrong with it.
@@ -186,23 +171,12 @@ fn compiled(source: LawSource, origin: String, text: &str, reporter: &mut Report
         Err(mistakes) => {
             let number = reporter.add_source(origin, text);
             for Mistake { place, end, message } in mistakes {
-                let [start, end] = [place, end].map(|place| offset(text, place));
+                let [start, end] = [place, end].map(|place| place.byte_in(text));
                 reporter.report(Span { source: number, start, end: end.max(start) }, message);
             }
             None
         }
     }
-}
-
-/// The byte of `text` at a place.
-fn offset(text: &str, place: Place) -> usize {
-    let line = place.line.saturating_sub(1) as usize;
-    let start = match line {
-        0 => 0,
-        _ => text.match_indices('\n').nth(line - 1).map_or(text.len(), |(at, _)| at + 1),
-    };
-    let within = text[start..].char_indices().nth(place.column.saturating_sub(1) as usize);
-    within.map_or(text.len(), |(at, _)| start + at)
 }
 
 impl Form for ParametersForm {
@@ -240,8 +214,7 @@ pub(crate) fn faults(values: &BTreeMap<String, f64>, law: &WrittenLaw) -> Vec<St
             return Some(format!("{} has no parameter `{name}`{hint}", law.name()));
         };
         let [low, high] = parameter.range;
-        let unit = parameter.unit.to_string();
-        let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
+        let unit = parameter.unit.behind();
         (!(low..=high).contains(value)).then(|| {
             format!("`{name}` must be from {low} to {high}{unit}, as {} says, not {value}", law.name())
         })

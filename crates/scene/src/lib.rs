@@ -47,7 +47,7 @@ mod vehicle;
 
 pub use diagnostics::{Diagnostic, Diagnostics};
 pub use edit::{ChangeText, EditError, SceneText, toml_text};
-pub use law_file::load_law;
+pub use law_file::{LAW_CHOICE, load_law};
 pub use link::{Link, LinkError, LinkOrigin, LinkProof, LinkedScene, TimedOverride};
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};

@@ -99,7 +99,7 @@ fn parameters<'a>(law: &'a Follow, all: &'a [&Follow]) -> impl Iterator<Item = S
     let declared = law.law.custom().map_or(&[][..], |law| &law.declaration().parameters);
     declared.iter().take(PARAMETERS).enumerate().map(|(index, parameter)| {
         let value = range(all, |follow| [follow.law.values()[index]; 2]);
-        format!("{} {value} {}", parameter.symbol, parameter.unit).trim_end().to_owned()
+        format!("{} {value}{}", parameter.symbol, parameter.unit.behind())
     })
 }
 

@@ -15,16 +15,13 @@ use thiserror::Error;
 use vocabulary::{LawKind, math};
 
 /// A number that is searched, of every follower the same.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Knob {
+struct Knob {
     /// What it is called where it is written.
-    pub name: String,
+    name: String,
     /// Least and largest value.
-    pub bounds: [f64; 2],
+    bounds: [f64; 2],
     /// Whether equal steps are equal ratios.
-    pub logarithmic: bool,
-    /// Where the search begins.
-    pub start: f64,
+    logarithmic: bool,
 }
 
 /// One run with some gains.
@@ -93,27 +90,24 @@ impl<'a> Search<'a> {
 
     /// The parameters of a custom law, within the ranges that it declares.
     fn custom(follow: &Follow, law: &'a WrittenLaw) -> Self {
-        let values = follow.law.values();
-        let knob = |(own, start): (&laws::Parameter, &f64)| Knob {
+        let knob = |own: &laws::Parameter| Knob {
             name: own.name.clone(),
             bounds: own.range,
             logarithmic: own.scale == laws::Scale::Logarithmic,
-            start: *start,
         };
-        let knobs = law.declaration().parameters.iter().zip(&values).map(knob).collect();
-        Self { law: Some(law), knobs, starts: vec![values] }
+        let knobs = law.declaration().parameters.iter().map(knob).collect();
+        Self { law: Some(law), knobs, starts: vec![follow.law.values()] }
     }
 
     /// The gains of output feedback.
     fn built_in(follow: &Follow) -> Self {
         let own = [follow.law.k[0], follow.law.beta[0], follow.law.slope[0], follow.observer.epsilon[0]];
-        let knob = |((name, bounds, _), start): (&(&str, [f64; 2], _), f64)| Knob {
+        let knob = |(name, bounds, _): &(&str, [f64; 2], _)| Knob {
             name: (*name).to_owned(),
             bounds: *bounds,
             logarithmic: true,
-            start,
         };
-        let knobs = GAINS.iter().zip(own).map(knob).collect();
+        let knobs = GAINS.iter().map(knob).collect();
         let others = [0, 1].map(|which| GAINS.iter().map(|(.., starts)| starts[which]).collect());
         Self { law: None, knobs, starts: std::iter::once(own.to_vec()).chain(others).collect() }
     }

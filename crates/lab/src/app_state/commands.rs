@@ -1,5 +1,6 @@
 //! Actions on the scene and its run. The window handles files, pictures and itself.
 
+use super::law_edit::remove_law;
 use super::{AppState, Tool};
 use crate::action::{Action, Happens};
 use crate::numbers::{fixed, toml_number};
@@ -331,9 +332,7 @@ impl AppState {
             }
             text.remove(&format!("robots.{name}.leaders"))?;
             if looks_at != 1 {
-                for key in ["file", "text", "parameters"] {
-                    text.remove(&format!("robots.{name}.law.{key}"))?;
-                }
+                remove_law(text, &format!("robots.{name}."))?;
             }
             for (key, value) in [
                 ("leader", format!("{ahead:?}")),

@@ -3,11 +3,8 @@
 use super::AppState;
 use crate::action::LawChoice;
 use laws::{CustomLaw, Declaration, LawFile, Mistake};
-use scene::{EditError, SceneText, toml_text};
+use scene::{EditError, LAW_CHOICE, SceneText, toml_text};
 use vocabulary::{EntityId, StepRecord, Word};
-
-/// Keys of a scene that say which law a follower has.
-const CHOICE: [&str; 5] = ["law.kind", "law.file", "law.text", "law.module", "law.parameters"];
 
 /// The text of a custom law that is being edited.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -46,7 +43,8 @@ impl AppState {
                     state.fault
                 );
                 self.say(text.clone(), true);
-                if let Some(edit) = self.law_edit() {
+                let shown = self.tuned_follower().is_some_and(|(_, robot, ..)| robot == state.robot);
+                if let Some(edit) = self.law_edit().filter(|_| shown) {
                     self.law_edit = Some(LawEdit { refusal: Some(text), ..edit });
                 }
             }
@@ -106,9 +104,7 @@ impl AppState {
                 vec![format!("robots.{name}.")]
             };
             for place in &places {
-                for key in CHOICE {
-                    text.remove(&format!("{place}{key}"))?;
-                }
+                remove_law(text, place)?;
             }
             let place = if all { String::new() } else { format!("robots.{name}.") };
             text.set(&format!("{place}{key}"), &value)?;
@@ -117,6 +113,14 @@ impl AppState {
             })
         })
     }
+}
+
+/// Takes out what says at `place`, such as "robots.left.", which law a follower has, and with which parameters.
+pub(super) fn remove_law(text: &mut SceneText, place: &str) -> Result<(), EditError> {
+    LAW_CHOICE
+        .iter()
+        .chain(&["parameters"])
+        .try_for_each(|key| text.remove(&format!("{place}law.{key}")).map(drop))
 }
 
 impl LawChoice {

@@ -5,6 +5,7 @@ use crate::action::Action;
 use crate::numbers::toml_number;
 use crate::symbols::Symbol;
 use eframe::egui::{self, Slider, Ui};
+use std::borrow::Cow;
 
 /// Range and scale of a slider.
 #[derive(Debug, Clone, Copy)]
@@ -111,26 +112,15 @@ impl SliderRow {
         sliders: impl FnOnce(&mut Ui, &mut Vec<Action>),
     ) {
         ui.horizontal(|ui| {
-            ui.allocate_ui_with_layout(
-                egui::vec2(34.0, ui.spacing().interact_size.y),
-                egui::Layout::left_to_right(egui::Align::Center),
-                |ui| {
-                    ui.set_min_width(34.0);
-                    self.symbol.label(ui);
-                },
-            );
+            sign(ui, |ui| self.symbol.label(ui));
             sliders(ui, out);
-            let back = ui.add_enabled(differs, egui::Button::new("↺").frame(false));
-            let name = format!("Reset {}", self.symbol.name.to_lowercase());
-            back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, differs, name.clone()));
-            if back.on_hover_text(format!("{name}: {default} {}", self.symbol.unit)).clicked() {
-                out.push(Action::Tune { what: name.clone(), key: self.key.into(), value: None });
-            }
+            let name = self.symbol.name.to_lowercase();
+            reset(ui, differs, &name, &format!("{default} {}", self.symbol.unit), self.key.into(), out);
         });
     }
 
     fn slider(&self, ui: &mut Ui, value: &mut f64, name: &str) -> egui::Response {
-        ui.spacing_mut().slider_width = (ui.available_width() - 118.0).clamp(60.0, 260.0);
+        ui.spacing_mut().slider_width = slider_width(ui);
         let [low, high] = self.range.span;
         let unit = if self.symbol.unit.contains(',') { "" } else { self.symbol.unit };
         let suffix = if unit.is_empty() { String::new() } else { format!(" {unit}") };
@@ -151,6 +141,37 @@ impl SliderRow {
         }
         response.widget_info(|| egui::WidgetInfo::slider(true, *value, name));
         response.on_hover_ui(|ui| self.symbol.tip(ui))
+    }
+}
+
+/// The place of a symbol at the front of a row.
+pub(crate) fn sign(ui: &mut Ui, symbol: impl FnOnce(&mut Ui) -> egui::Response) {
+    let size = egui::vec2(34.0, ui.spacing().interact_size.y);
+    ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+        ui.set_min_width(size.x);
+        symbol(ui)
+    });
+}
+
+/// Width of a slider that leaves room for its number and its way back.
+pub(crate) fn slider_width(ui: &Ui) -> f32 {
+    (ui.available_width() - 118.0).clamp(60.0, 260.0)
+}
+
+/// The way back of the value at `key` to its default, at the end of a row.
+pub(crate) fn reset(
+    ui: &mut Ui,
+    differs: bool,
+    name: &str,
+    default: &str,
+    key: Cow<'static, str>,
+    out: &mut Vec<Action>,
+) {
+    let back = ui.add_enabled(differs, egui::Button::new("↺").frame(false));
+    let what = format!("Reset {name}");
+    back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, differs, what.clone()));
+    if back.on_hover_text(format!("{what}: {default}")).clicked() {
+        out.push(Action::Tune { what, key, value: None });
     }
 }
 

@@ -1,6 +1,6 @@
 //! Custom laws: which law a follower has, sliders for the parameters that a law declares, and its text.
 
-use super::controls::released;
+use super::controls::{released, reset, sign, slider_width};
 use super::law::scope;
 use super::{chosen, empty_panel, on_click, tune};
 use crate::action::{Action, LawChoice};
@@ -8,7 +8,7 @@ use crate::app_state::{AppState, LawEdit};
 use crate::numbers::toml_number;
 use eframe::egui::text::{LayoutJob, TextFormat};
 use eframe::egui::{self, Color32, ComboBox, FontId, RichText, ScrollArea, Slider, Stroke, TextEdit, Ui};
-use laws::{CustomLaw, LawFile, Mistake, Parameter, Place, SHIPPED_LAWS, Scale, TEMPLATE};
+use laws::{CustomLaw, LawFile, Mistake, Parameter, SHIPPED_LAWS, Scale, TEMPLATE};
 use scene::{Law, LawSource, WrittenLaw};
 use vocabulary::LawKind;
 
@@ -39,10 +39,11 @@ pub(crate) fn choice(ui: &mut Ui, law: &Law, built_in: &[(LawKind, &str, &str)],
         on_click(&new, Action::ChooseLaw(LawChoice::Text(TEMPLATE.to_owned())), out);
         ui.separator();
         let source = law.custom().map(WrittenLaw::source);
-        for shipped in SHIPPED_LAWS.iter().filter(|shipped| title(shipped.text).1 == 1) {
+        for shipped in SHIPPED_LAWS {
+            let Some(title) = title(shipped.text) else { continue };
             let now = source == Some(&LawSource::Shipped(shipped.name.to_owned()));
             let tip = format!("Law file {}", shipped.name);
-            let label = ui.selectable_label(now, format!("{} (law file)", title(shipped.text).0));
+            let label = ui.selectable_label(now, format!("{title} (law file)"));
             if label.on_hover_text(tip).clicked() && !now {
                 out.push(Action::ChooseLaw(LawChoice::Shipped(shipped.name)));
             }
@@ -51,12 +52,10 @@ pub(crate) fn choice(ui: &mut Ui, law: &Law, built_in: &[(LawKind, &str, &str)],
     chosen(&response.response, "Law", &shown);
 }
 
-/// Title and number of leaders of a law that comes with the program.
-fn title(text: &str) -> (String, usize) {
-    LawFile::compile(text).map_or_else(
-        |_| (String::new(), 0),
-        |law| (law.declaration().title.clone(), law.declaration().leaders),
-    )
+/// Title of a law that comes with the program and looks at one leader.
+fn title(text: &str) -> Option<String> {
+    let law = LawFile::compile(text).ok()?;
+    (law.declaration().leaders == 1).then(|| law.declaration().title.clone())
 }
 
 /// Parameters of a custom law.
@@ -72,8 +71,12 @@ pub(crate) fn parameters(ui: &mut Ui, app_state: &AppState, law: &Law, out: &mut
     let text =
         ui.button("Edit its text").on_hover_text("The panel Law text; what compiles takes hold as you type");
     on_click(&text, Action::ShowPanel("Law text"), out);
-    if app_state.law_edit().is_some_and(|edit| !edit.mistakes.is_empty() || edit.refusal.is_some()) {
-        ui.colored_label(ui.visuals().error_fg_color, "Its text has mistakes: the law before them drives on");
+    let told = app_state.law_edit().and_then(|edit| match &*edit.mistakes {
+        [] => edit.refusal,
+        _ => Some("Its text has mistakes: the law before them drives on".to_owned()),
+    });
+    if let Some(told) = told {
+        ui.colored_label(ui.visuals().error_fg_color, told.lines().next().unwrap_or_default());
     }
 }
 
@@ -105,37 +108,24 @@ pub fn text(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
 /// A slider for a parameter.
 fn row(ui: &mut Ui, parameter: &Parameter, value: f64, out: &mut Vec<Action>) {
     let Parameter { name, symbol, default, range: [low, high], scale, help, .. } = parameter;
-    let unit = parameter.unit.to_string();
+    let unit = parameter.unit.behind();
     let key = format!("law.parameters.{name}");
     ui.horizontal(|ui| {
-        ui.allocate_ui_with_layout(
-            egui::vec2(34.0, ui.spacing().interact_size.y),
-            egui::Layout::left_to_right(egui::Align::Center),
-            |ui| {
-                ui.set_min_width(34.0);
-                ui.label(RichText::new(symbol).strong());
-            },
-        );
-        ui.spacing_mut().slider_width = (ui.available_width() - 118.0).clamp(60.0, 260.0);
-        let suffix = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        sign(ui, |ui| ui.label(RichText::new(symbol).strong()));
+        ui.spacing_mut().slider_width = slider_width(ui);
         let mut new = value;
-        let mut slider = Slider::new(&mut new, *low..=*high).max_decimals(5).suffix(suffix);
+        let mut slider = Slider::new(&mut new, *low..=*high).max_decimals(5).suffix(&unit);
         if *scale == Scale::Logarithmic {
             slider = slider.logarithmic(true).smallest_positive(*low);
         }
         let response = ui.add(slider);
         response.widget_info(|| egui::WidgetInfo::slider(true, new, name));
-        let response = response.on_hover_text(format!("{name}: {help} ({low} to {high} {unit})"));
+        let response = response.on_hover_text(format!("{name}: {help} ({low} to {high}{unit})"));
         if response.changed() && new != value {
             out.push(tune(name, key.clone(), toml_number(new.clamp(*low, *high))));
         }
         released(&response, out);
-        let back = ui.add_enabled(value != *default, egui::Button::new("↺").frame(false));
-        let reset = format!("Reset {name}");
-        back.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, value != *default, reset.clone()));
-        if back.on_hover_text(format!("{reset}: {default} {unit}")).clicked() {
-            out.push(Action::Tune { what: reset, key: key.into(), value: None });
-        }
+        reset(ui, value != *default, name, &format!("{default}{unit}"), key.into(), out);
     });
 }
 
@@ -212,29 +202,25 @@ fn editor(ui: &mut Ui, edit: &LawEdit, out: &mut Vec<Action>) {
 fn underlined(text: &str, mistakes: &[Mistake], font: &FontId, colour: Color32) -> LayoutJob {
     let mut job = LayoutJob::default();
     job.wrap.max_width = f32::INFINITY;
-    let starts: Vec<usize> =
-        std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
-    let offset = |place: Place| {
-        let start = starts.get(place.line.saturating_sub(1) as usize).copied().unwrap_or(text.len());
-        let within = text[start..].char_indices().nth(place.column.saturating_sub(1) as usize);
-        within.map_or(text.len(), |(at, _)| start + at)
-    };
     // A mistake at the end of the text has no character of its own.
-    let spans: Vec<[usize; 2]> =
-        mistakes.iter().map(|mistake| [offset(mistake.place), offset(mistake.end)]).collect();
+    let spans: Vec<[usize; 2]> = mistakes
+        .iter()
+        .map(|mistake| [mistake.place, mistake.end].map(|place| place.byte_in(text)))
+        .collect();
     let plain = TextFormat::simple(font.clone(), colour);
     let comment = TextFormat::simple(font.clone(), colour.gamma_multiply(0.6));
     let mut cuts: Vec<usize> = spans.iter().flatten().copied().chain([0, text.len()]).collect();
-    for (line, start) in starts.iter().enumerate() {
-        let end = starts.get(line + 1).copied().unwrap_or(text.len());
+    let mut end = 0;
+    for line in text.split_inclusive('\n') {
+        cuts.extend(line.find('#').map(|at| end + at));
+        end += line.len();
         cuts.push(end);
-        cuts.extend(text[*start..end].find('#').map(|at| start + at));
     }
     cuts.sort_unstable();
     cuts.dedup();
     let commented = |at: usize| {
-        let start = text[..at].rfind('\n').map_or(0, |at| at + 1);
-        text[start..=at.min(text.len() - 1)].contains('#')
+        let line = text[..at].rfind('\n').map_or(0, |at| at + 1);
+        text[at..].starts_with('#') || text[line..at].contains('#')
     };
     for piece in cuts.windows(2) {
         let [from, to] = [piece[0], piece[1]];

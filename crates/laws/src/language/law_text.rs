@@ -74,6 +74,19 @@ mod tests {
     }
 
     #[test]
+    fn a_place_leads_back_to_its_byte() {
+        for marked in ["\u{feff}ψ = 1\r\n  γ\n", "ψ = 1\n\nγ"] {
+            let text = LawText::new(marked);
+            let mark = marked.len() - text.as_str().len();
+            for (byte, _) in text.as_str().char_indices() {
+                assert_eq!(text.place(byte).byte_in(marked), mark + byte);
+            }
+            assert_eq!(text.place(text.as_str().len()).byte_in(marked), marked.len());
+        }
+        assert_eq!(Place { line: 9, column: 1 }.byte_in("a\nb"), 3);
+    }
+
+    #[test]
     fn a_quotation_is_one_short_line() {
         let text = LawText::new("a +\n    b");
         assert_eq!(text.quote(Stretch { from: 0, to: 9 }), "`a + b`");

@@ -63,7 +63,8 @@ fn the_text_keeps_the_keyboard_through_mistakes() {
         panel.run();
         edited
     };
-    for (text, mistaken) in [("x", true), ("y", true), ("(", true)] {
+    // A line that begins with a Greek letter is a line like any other.
+    for (text, mistaken) in [("x", true), ("\nε", true), ("# ψ", true), ("(", true)] {
         let edited = typed(&mut panel, text);
         assert!(edited.contains(text));
         assert_eq!(
@@ -98,4 +99,15 @@ fn memory_and_lets_are_curves() {
     let curve = lab::quantities::signal_curves(&custom(30), "n", 100);
     let counted: Vec<f64> = curve[0].points.iter().map(|point| point[1]).collect();
     assert_eq!((curve.len(), counted.first(), counted.last()), (2, Some(&1.0), Some(&30.0)));
+}
+
+#[test]
+fn a_law_that_breaks_off_is_told_at_its_text() {
+    let broken = TEMPLATE.replace("command = ahead", "command = ahead * sqrt(0.05 - time / 1 [s])");
+    let text = with(THREE, &[("law.text", &scene::toml_text(&broken))]);
+    for (show, name) in [(custom_law::text as fn(&mut _, &_, &mut _), "Law text"), (law::show, "Law")] {
+        let panel = panel(app_state(&text, 10), show);
+        assert_says(&panel, &["Law of left, t = 0.06 s", "brakes until its law is changed"]);
+        assert!(!says(&panel, "Takes hold") && !says(&panel, "has mistakes"), "{name}");
+    }
 }
