@@ -4,7 +4,7 @@
 //! leader's deviation [δv, δω] follow the errors [δℓ, δψ] and the follower's own deviation, which is what the next one
 //! follows.
 
-use crate::formation::EdgeLaw;
+use crate::edge_law::EdgeLaw;
 use crate::law::{Law, LawInput, Switching};
 use crate::observer::Estimate;
 use crate::path_heading::PathHeading;
