@@ -10,11 +10,9 @@ pub fn caption(scene: &Scene) -> String {
         return "No followers".to_owned();
     }
     let mut parts = vec![common(&all, law).unwrap_or_else(|| "Mixed laws".to_owned())];
-    let custom: Vec<_> = all.iter().copied().filter(|follow| follow.law.custom().is_some()).collect();
-    if let (Some(law), Some(Some(_))) =
-        (custom.first(), common(&custom, |follow| follow.law.custom().cloned()))
-    {
-        parts.extend(parameters(law, &custom));
+    // Where laws are mixed, their parameters would be anybody's.
+    if let Some(Some(_)) = common(&all, |follow| follow.law.custom().cloned()) {
+        parts.extend(parameters(all[0], &all));
     }
     let built_in: Vec<_> = all.iter().copied().filter(|follow| follow.law.custom().is_none()).collect();
     if !built_in.is_empty() {
@@ -173,6 +171,11 @@ mod tests {
         assert!(both.contains("K (3 to 5, 4 to 5)"), "{both}");
         let laws = told(&["robots.follower-2.law.kind=full-state"]);
         assert!(laws.starts_with("Mixed laws · K 5 · β 5 ·"), "{laws}");
+        let custom = told(&["law.file=integral", "robots.follower-2.law.parameters.T=3"]);
+        let title = "Output feedback with an integral of the error";
+        assert!(custom.starts_with(&format!("{title} · k₁ 5 1/s · k₂ 5 1/s · T 1 to 3 s · ε")), "{custom}");
+        let one = told(&["robots.follower-2.law.file=integral"]);
+        assert!(one.starts_with("Mixed laws · K 5 · β 5 ·"), "{one}");
         let path = ["law.heading=path", "law.heading_lag=0.5", "robots.follower-2.law.heading_lag=1"];
         let behind = told(&path);
         assert!(behind.contains(" · path heading, λ 1 m, τ 0.5 to 1 m · ε"), "{behind}");
