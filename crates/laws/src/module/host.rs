@@ -8,7 +8,7 @@ use wasmi::{Caller, Engine, Error, Linker, StoreLimits, TrapCode, ValType};
 pub(super) const FROM: &str = "env";
 
 /// Instructions that a function counts for, about as long as it takes.
-const PRICE: u64 = 20;
+pub(super) const PRICE: u64 = 20;
 
 /// A function that a module may import; all return an `f64`.
 #[derive(Clone, Copy)]

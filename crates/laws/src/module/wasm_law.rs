@@ -19,6 +19,8 @@ use wasmi::{
 const MODULE_MAX: usize = 1_000_000;
 /// Largest linear memory, bytes.
 const MEMORY_MAX: usize = 16 << 20;
+/// Most tables.
+const TABLES_MAX: usize = 4;
 /// Largest table, entries.
 const TABLE_MAX: usize = 10_000;
 /// Longest declaration, bytes.
@@ -147,7 +149,7 @@ impl WasmLaw {
         let limits = StoreLimitsBuilder::new()
             .memory_size(MEMORY_MAX)
             .table_elements(TABLE_MAX)
-            .tables(4)
+            .tables(TABLES_MAX)
             .memories(1)
             .instances(1)
             .trap_on_grow_failure(true)
@@ -438,4 +440,36 @@ fn told(error: &Error) -> String {
 /// The words of the library in one line, not too long.
 fn shown_whole(text: &str) -> String {
     text.chars().filter(|c| !c.is_control()).take(300).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::module::host::PRICE;
+
+    #[test]
+    fn the_page_on_modules_states_the_bounds() {
+        let page = include_str!("../../../../docs/law-modules.md");
+        let thousands = |n: u64| {
+            let digits = n.to_string();
+            let groups: Vec<&str> =
+                digits.as_bytes().rchunks(3).rev().map(|g| std::str::from_utf8(g).unwrap()).collect();
+            groups.join(" ")
+        };
+        let entries = thousands(TABLE_MAX as u64);
+        for row in [
+            format!("| module | {} MB |", MODULE_MAX / 1_000_000),
+            format!(
+                "| instructions of a call | {}, counted by the interpreter; an imported function counts for {PRICE} |",
+                thousands(FUEL)
+            ),
+            format!("| linear memory | {} MiB |", MEMORY_MAX >> 20),
+            format!("| tables | {TABLES_MAX}, of {entries} entries each |"),
+            format!("| calls within calls | {} |", STACK_MAX[0]),
+            format!("| declaration | {} bytes |", thousands(TEXT_MAX as u64)),
+            format!("room for {REGION} numbers"),
+        ] {
+            assert!(page.contains(&row), "docs/law-modules.md lacks: {row}");
+        }
+    }
 }
