@@ -39,7 +39,7 @@ pub(crate) struct CertifyArgs {
     /// Compute sensitivities even if the runs are long: wheeled vehicles, many robots
     #[arg(long, conflicts_with = "paper_only")]
     sensitivity: bool,
-    /// Exit with 1 if a statement is violated
+    /// Exit with 1 if a statement is violated or a custom law breaks off
     #[arg(long)]
     strict: bool,
 }
@@ -70,7 +70,7 @@ impl CertifyReport<'_> {
         self.fleet.edges.get(index).map_or("", |edge| self.fleet.pair(*edge)[1])
     }
 
-    /// Whether no statement of any edge is violated.
+    /// Whether no statement of any edge is violated, and every law gave its commands.
     fn holds(&self) -> bool {
         self.certificates.iter().all(Certificate::unbroken)
     }

@@ -39,8 +39,8 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
             }
             Ok(SceneRun { scene, simulation }) => {
                 let fleet = simulation.fleet();
-                for late in scene.late() {
-                    note(&format!("{name}: note: {late}"));
+                for remark in scene.late().into_iter().chain(scene.unused()) {
+                    note(&format!("{name}: note: {remark}"));
                 }
                 for slow in studies::too_slow_leads(&simulation, scene.time.duration) {
                     note(&format!("{name}: note: {slow}"));

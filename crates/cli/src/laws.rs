@@ -2,10 +2,11 @@
 
 use crate::Outcome;
 use crate::failure::Failure;
+use crate::load::read;
 use crate::print::{json, note, say, verbatim};
 use clap::{Args, Subcommand};
 use laws::{CustomLaw, Declaration, Knowledge, LawFile, Parameter, SHIPPED_LAWS, Scale, TEMPLATE, shipped};
-use scene::{WrittenLaw, load_law};
+use scene::{Diagnostic, WrittenLaw, load_law};
 use serde_json::{Value, json};
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
@@ -26,10 +27,10 @@ pub(crate) struct LawsArgs {
 enum LawsCommand {
     /// List the laws that come with the program (the default)
     List,
-    /// Print the text of a law that comes with the program: echelon laws show integral > mine.law
+    /// Print the text of a law: echelon laws show integral > mine.law
     Show {
-        /// Its name
-        #[arg(value_name = "NAME")]
+        /// The name of a law that comes with the program, or a scene whose followers have a custom law
+        #[arg(value_name = "LAW")]
         name: String,
     },
     /// Say what is wrong with law files and WebAssembly modules, or what they declare
@@ -139,32 +140,73 @@ fn declared_json(declaration: &Declaration) -> Value {
 }
 
 fn show(name: &str) -> Outcome {
-    let Some(law) = shipped(name) else {
-        let names: Vec<&str> = SHIPPED_LAWS.iter().map(|law| law.name).collect();
-        let text = format!("no law called `{name}` comes with the program; there are {}", names.join(", "));
-        return Err(Failure::Usage(text));
-    };
-    verbatim(law.text);
-    Ok(())
+    if let Some(law) = shipped(name) {
+        verbatim(law.text);
+        return Ok(());
+    }
+    if Path::new(name).is_file() {
+        return show_of_scene(Path::new(name));
+    }
+    let names: Vec<&str> = SHIPPED_LAWS.iter().map(|law| law.name).collect();
+    let text = format!("no law called `{name}` comes with the program; there are {}", names.join(", "));
+    Err(Failure::Usage(text))
+}
+
+/// The text of the law of a scene's followers: what was written in the lab, as a file of its own.
+fn show_of_scene(path: &Path) -> Outcome {
+    let scene = read(path, &[])?;
+    let mut texts: Vec<(&str, &str)> = vec![];
+    for (follower, follow) in scene.followers() {
+        if let Some(text) = follow.law.custom().and_then(WrittenLaw::text)
+            && !texts.iter().any(|(_, known)| *known == text)
+        {
+            texts.push((follower, text));
+        }
+    }
+    let path = path.display();
+    match texts[..] {
+        [(_, text)] => {
+            verbatim(&format!("{}\n", text.trim_end()));
+            Ok(())
+        }
+        [] => Err(Failure::Usage(format!("{path}: no follower has a law file or a law as text"))),
+        [(first, _), (second, _), ..] => Err(Failure::Usage(format!(
+            "{path}: its followers have different laws, those of `{first}` and `{second}` among them: copy the one that \
+             you want out of `echelon check {path} --resolved`"
+        ))),
+    }
 }
 
 fn check(paths: &[PathBuf], as_json: bool) -> Outcome {
     let (mut problems, mut all) = (vec![], vec![]);
     for path in paths {
-        match load_law(path) {
-            Ok(law) if as_json => {
-                let mut found = declared_json(law.declaration());
-                found["law"] = json!(path.display().to_string());
-                all.push(found);
+        let mut found = match load_law(path) {
+            Ok(law) if as_json => declared_json(law.declaration()),
+            Ok(law) => {
+                tell(path, law.declaration());
+                continue;
             }
-            Ok(law) => tell(path, law.declaration()),
-            Err(faults) => problems.push(faults.to_string()),
-        }
+            Err(mistakes) => {
+                problems.push(mistakes.to_string());
+                json!({ "mistakes": mistakes.all().iter().map(mistake_json).collect::<Vec<_>>() })
+            }
+        };
+        found["law"] = json!(path.display().to_string());
+        all.push(found);
     }
-    if as_json && problems.is_empty() {
+    if as_json {
         json(&all.into());
     }
     if problems.is_empty() { Ok(()) } else { Err(Failure::Usage(problems.join("\nerror: "))) }
+}
+
+/// A mistake with its place; without one where the whole file is meant.
+fn mistake_json(mistake: &Diagnostic) -> Value {
+    let Diagnostic { line, column, width, message, .. } = mistake;
+    match line {
+        0 => json!({ "message": message }),
+        _ => json!({ "line": line, "column": column, "width": width, "message": message }),
+    }
 }
 
 /// What a law declares.

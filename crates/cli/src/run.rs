@@ -53,8 +53,10 @@ pub(crate) fn run(args: &RunArgs) -> Outcome {
 fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
     let mut run = load(&args.scene)?;
     let link = link::meant(&args.scene.scene)?;
-    for late in run.scene.late().iter().filter(|_| !args.scene.quiet && !args.scene.json) {
-        note(&format!("note: {late}"));
+    if !args.scene.quiet && !args.scene.json {
+        for remark in run.scene.late().into_iter().chain(run.scene.unused()) {
+            note(&format!("note: {remark}"));
+        }
     }
     let roll = Roll::default();
     let logs = !args.no_record && !args.no_log;

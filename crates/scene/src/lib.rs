@@ -43,6 +43,7 @@ mod start;
 mod table_file;
 mod text;
 mod types;
+mod unused;
 mod vehicle;
 
 pub use diagnostics::{Diagnostic, Diagnostics};

@@ -199,3 +199,28 @@ fn a_law_may_change_while_a_run_goes() {
     }
     assert_eq!(scene(&[]).sets_to(&scene(&[])).expect("no change"), Vec::<String>::new());
 }
+
+#[test]
+fn what_a_custom_law_does_not_use_is_told_once() {
+    let lines = "[law]\nfile = \"integral\"\nbeta = [1.0, 1.0]\nslope = [2.0, 2.0]\n";
+    assert_eq!(
+        parse(lines, &[]).expect("a scene").unused(),
+        [
+            "`law.beta`, `law.slope` are for the built-in laws; integral does not use them: its own parameters are in \
+             `law.parameters`"
+        ]
+    );
+    let scene = parse(&table(LAW), &["law.k=4"]).expect("a scene");
+    let told = scene.unused();
+    assert_eq!(
+        told[0],
+        "`law.k` is for the built-in laws; law.text does not use them: its own: `law.parameters.k`"
+    );
+    // It drives at a pace of its own and reads no set point.
+    assert!(
+        told[1].starts_with("`follower-1` is given a distance to `leader`, which law.text does not read"),
+        "{told:?}"
+    );
+    assert_eq!(told.len(), 1 + 2 * 2, "{told:?}");
+    assert_eq!(parse("[law]\nk = [3.0, 3.0]\n", &[]).expect("a scene").unused(), [""; 0]);
+}

@@ -21,6 +21,7 @@ pub mod dataset;
 #[cfg(not(target_family = "wasm"))]
 pub mod diff;
 mod error;
+mod law_fault;
 #[cfg(not(target_family = "wasm"))]
 pub mod likeness;
 pub mod link;
@@ -40,6 +41,7 @@ pub mod verdict;
 
 pub use error::Error;
 pub use formation::closed_loop::{LoopEnd, Pole, SteadyLeaders, close};
+pub use law_fault::law_fault_words;
 #[cfg(not(target_family = "wasm"))]
 pub use record_source::RecordSource;
 #[cfg(not(target_family = "wasm"))]

@@ -1,5 +1,6 @@
 //! What a run showed, held against what its scene expects.
 
+use crate::law_fault::law_fault_words;
 use metrics::{
     EdgeMetrics, EventSummary, JudgedExpectation, LawFaultMetrics, Metrics, STANDING_AFTER, StandingMetrics,
 };
@@ -15,16 +16,10 @@ pub(crate) fn not_finite(fault: &NotFinite) -> JudgedExpectation {
 
 /// What every custom law is asked for.
 fn law_fault(scene: &Scene, fault: &LawFaultMetrics) -> JudgedExpectation {
-    let LawFaultMetrics { robot, time, sample, fault } = fault;
-    let last = scene.changes.iter().rfind(|change| change.at <= time + 1e-9);
-    let then = last.map_or(scene, |change| &change.then);
-    let follow = then.followers().find(|(name, _)| name == robot).map(|(_, follow)| follow);
-    let law = follow.and_then(|follow| follow.law.custom()).map_or("its law", |law| law.name());
-    let mark = if fault.starts_with(|c: char| c.is_ascii_digit()) { ":" } else { ": " };
     JudgedExpectation {
         key: "law",
         wanted: "a command at every sample".to_owned(),
-        found: format!("{robot}, t = {time:.2} s (sample {sample}), {law}{mark}{fault}"),
+        found: law_fault_words(scene, fault),
         met: Some(false),
     }
 }

@@ -45,6 +45,12 @@ pub(super) fn as_json(report: &CertifyReport<'_>) -> Value {
 fn edge(report: &CertifyReport<'_>, certificate: &Certificate) -> Value {
     let mut value = serde_json::to_value(certificate.metrics(&report.fleet)).unwrap_or_default();
     let witness = &certificate.witness;
+    let measured = &certificate.measured;
+    value["measured"] = json!({
+        "samples": measured.samples, "first": measured.first, "last": measured.last, "largest": measured.largest,
+        "falls": measured.falls, "limited": measured.limited, "effort": measured.effort,
+    });
+    value["law_fault"] = json!(certificate.fault);
     value["zeta_b"] = json!(witness.initial);
     value["final_error"] = json!(certificate.final_error);
     value["error_left_by_tanh"] = json!(certificate.smoothing);

@@ -50,6 +50,10 @@ fn edge(report: &CertifyReport<'_>, certificate: &Certificate) {
     if certificate.custom {
         say("  the paper's statements are about its own laws; of any law holds what was measured:");
         say(&format!("  {}", certificate.measured.words()));
+        if let Some(fault) = &certificate.fault {
+            say(&format!("  THE LAW BREAKS OFF: {}", studies::law_fault_words(report.scene, fault)));
+            say("  from then on its follower brakes");
+        }
         return;
     }
     for finding in &certificate.findings {
@@ -322,7 +326,7 @@ fn chain(report: &CertifyReport<'_>, beyond: &Beyond) {
                 NotLinear::SeveralLeaders => "its follower has several leaders",
                 NotLinear::CustomLaw => "a custom law: `echelon laws test` linearises one",
                 NotLinear::Sign => "the sign has no slope: inside β nothing is passed on",
-                NotLinear::NoSteadyMotion => "no steady motion to linearise about",
+                NotLinear::NoSteadyMotion => "no steady motion of its leader is known to linearise about",
             };
             say(&format!("    {name:<28} {why}"));
             continue;

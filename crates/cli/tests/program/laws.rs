@@ -1,6 +1,6 @@
 //! Custom laws: `echelon laws`, and runs with laws that work, break off, or do not fit.
 
-use crate::common::{echelon, told};
+use crate::common::{echelon, scene, told};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -47,10 +47,60 @@ fn laws_are_listed_shown_checked_and_begun() {
     let (code, out, err) = laws(&["check", "wrong.law"]);
     assert_eq!((code, out.as_str()), (2, ""));
     assert!(err.contains("wrong.law:1:9: ") && err.contains("wrong.law:2:11: "), "{err}");
+    let (code, out, _) = laws(&["check", "--json", "mine.law", "wrong.law"]);
+    let found: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!((code, &found[0]["law"], &found[0]["mistakes"]), (2, &Value::from("mine.law"), &Value::Null));
+    let mistake = &found[1]["mistakes"][0];
+    assert_eq!((&mistake["line"], &mistake["column"]), (&Value::from(1), &Value::from(9)), "{out}");
     let (code, text, _) = laws(&["show", "integral"]);
     assert!(code == 0 && text.starts_with("# Output feedback with an integral"));
     let (code, _, err) = laws(&["show", "nothing"]);
     assert!(code == 2 && err.contains("integral"), "{err}");
+}
+
+#[test]
+fn the_law_that_stands_in_a_scene_becomes_a_file() {
+    let folder = folder();
+    let args = ["run", "circle-three", "-o", "run", "--no-log", "--set", "law.file=breaks.law"];
+    told(&echelon(folder.path(), &args));
+    let show = |scene: &str| told(&echelon(folder.path(), &["laws", "show", scene]));
+    let (code, text, err) = show("run/scene.toml");
+    assert_eq!((code, text.as_str()), (0, BREAKS), "{err}");
+    let (code, _, err) = show(&scene("circle-three"));
+    assert!(code == 2 && err.contains("no follower has a law file"), "{err}");
+    let mixed = fs::read_to_string(scene("circle-three")).expect("a scene");
+    let mixed = format!("{mixed}\n[law]\nfile = \"integral\"\n").replacen(
+        "leader = \"leader\"",
+        "leader = \"leader\"\nlaw.file = \"sliding-mode\"",
+        1,
+    );
+    fs::write(folder.path().join("mixed.toml"), mixed).expect("a file");
+    let (code, _, err) = show("mixed.toml");
+    assert!(code == 2 && err.contains("have different laws"), "{err}");
+}
+
+#[test]
+fn certify_names_the_fault_of_a_law_and_tries_its_parameters() {
+    let folder = folder();
+    let certify = |law: &str, more: &[&str]| {
+        let set = format!("law.file={law}");
+        told(&echelon(folder.path(), &[&["certify", "line-three", "--set", &set], more].concat()))
+    };
+    let (code, out, _) = certify("breaks.law", &["--paper-only"]);
+    let fault = "THE LAW BREAKS OFF: follower-1, t = 5.01 s (sample 501), breaks.law:5:";
+    assert!(code == 0 && out.contains(fault), "{out}");
+    assert_eq!(certify("breaks.law", &["--paper-only", "--strict"]).0, 1);
+    let (code, out, _) = certify("breaks.law", &["--paper-only", "--json"]);
+    let found: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!((code, &found["edges"][0]["law_fault"]["sample"]), (0, &Value::from(501)));
+    let (code, out, _) = certify("integral", &["--json"]);
+    let found: Value = serde_json::from_str(&out).expect("JSON");
+    let gains = found["beyond"]["sensitivity"]["gains"].as_array().expect("gains");
+    let names: Vec<_> = gains.iter().filter_map(|gain| gain["gain"].as_str()).collect();
+    assert!(code == 0 && names.contains(&"T") && names.contains(&"ε distance"), "{names:?}");
+    // Where the error is measured as something, a parameter moves it.
+    let moved = gains.iter().filter(|gain| gain["gain"] == "T").flat_map(|gain| gain["edges"].as_array());
+    assert_eq!(moved.flatten().count(), 2);
 }
 
 #[test]

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 /// The most instructions.
 const CODE_MAX: usize = 20_000;
 /// The most instructions that a call may execute.
-const COST_MAX: u64 = 200_000;
+pub(super) const COST_MAX: u64 = 200_000;
 /// The most registers.
 pub(super) const REGISTERS_MAX: usize = 4096;
 

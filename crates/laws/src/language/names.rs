@@ -83,11 +83,16 @@ pub(super) fn called_here(name: &str) -> Option<&'static str> {
     })
 }
 
-/// " — did you mean `…`?" with the one of `known` that is nearest to `name`, where one is near.
-pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+/// The one of `known` that is nearest to `name`, where one is near.
+pub(super) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let scored = known.map(|known| (strsim::jaro_winkler(name, known), known));
     let best = scored.filter(|(score, _)| *score > 0.82).max_by(|a, b| a.0.total_cmp(&b.0));
-    best.map_or_else(String::new, |(_, known)| format!("; did you mean `{known}`?"))
+    best.map(|(_, known)| known)
+}
+
+/// "; did you mean `…`?" with the one of `known` that is nearest to `name`, where one is near.
+pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    nearest(name, known).map_or_else(String::new, |known| format!("; did you mean `{known}`?"))
 }
 
 /// All names of inputs as a law with so many leaders writes them.

@@ -557,6 +557,13 @@ fn unknown_names_are_followed_by_those_that_may_be_meant() {
             "let a = leader.turnrate",
             "1:9-1:24 there is no `leader.turnrate`; did you mean `leader.turn_rate`?",
         ),
+        ("let a = leder.distance", "1:9-1:23 nothing is called `leder`; did you mean `leader.distance`?"),
+        ("let a = waned.baering", "1:9-1:22 nothing is called `waned`; did you mean `wanted.bearing`?"),
+        (
+            "leaders 2\nlet a = leder2.bearing",
+            "2:9-2:23 nothing is called `leder2`; did you mean `leader2.bearing`?",
+        ),
+        ("let a = qqq.x", "1:9-1:12 nothing is called `qqq`"),
         ("let gain = 5\nlet a = gian * 2", "2:9-2:13 nothing is called `gian`; did you mean `gain`?"),
         ("let a = zzz", "1:9-1:12 nothing is called `zzz`"),
         (
@@ -824,7 +831,8 @@ fn what_is_too_large_is_one_mistake() {
     assert_eq!(
         mistakes_of("let a = 0 [s]\nrepeat 1000 { repeat 1000 { a = a + time } }"),
         [
-            "1:1-1:1 this law takes too long: a sample may take 200000 instructions, and this could take 2002002"
+            "2:1-2:12 this law takes too long: a sample may take 200000 instructions, and this could take 2002002; \
+             the loop in line 2 is most of it"
         ]
     );
     assert_eq!(mistakes_of("let a = 0 [s]\nrepeat 10000 { repeat 8 { a = a + time } }"), [""; 0]);
@@ -846,6 +854,8 @@ fn functions_that_double_are_refused_in_time() {
         let found = mistakes_of(&format!("{text}let a = f30(time)"));
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(found[0].contains("too large"), "{found:?}");
+        assert!(found[0].starts_with("32:9-32:18 "), "{found:?}");
+        assert!(found[0].ends_with("; the call of `f30` in line 32 is most of it"), "{found:?}");
     }
 }
 

@@ -6,7 +6,7 @@ use formation::certificate::{
     certify,
 };
 use formation::{Custom, EdgeLaw, Estimate, SetPointTrajectory, Switching};
-use metrics::{CertificateMetrics, StatementMetrics};
+use metrics::{CertificateMetrics, LawFaultMetrics, StatementMetrics};
 use scene::Scene;
 use simulation::Simulation;
 use vocabulary::{Edge, FleetInfo, LawKind, Motion, MotionInput, MotionPhase, StepRecord, TimeMode, Word};
@@ -36,6 +36,8 @@ pub struct Certificate {
     pub smoothing: Option<[f64; 2]>,
     /// Whether a custom law takes the place of the paper's, of which alone the statements speak.
     pub custom: bool,
+    /// Why the custom law broke off, and when, if it did.
+    pub fault: Option<LawFaultMetrics>,
     /// What holds for any law.
     pub measured: MeasuredTracking,
 }
@@ -69,9 +71,10 @@ impl Certificate {
         }
     }
 
-    /// Whether every statement holds or is not claimed.
+    /// Whether every statement holds or is not claimed, and the law gave its commands to the end.
     pub fn unbroken(&self) -> bool {
-        !self.findings.iter().any(|finding| matches!(finding.outcome(), StatementOutcome::Violated(_)))
+        self.fault.is_none()
+            && !self.findings.iter().any(|finding| matches!(finding.outcome(), StatementOutcome::Violated(_)))
     }
 }
 
@@ -97,6 +100,7 @@ struct CertifiedStretch {
     set_point: SetPointTrajectory,
     measures: bool,
     custom: Option<Custom>,
+    fault: Option<LawFaultMetrics>,
     measured: MeasuredTracking,
     rough_leader: Option<f64>,
     /// Of the bearing's set point, rad/s, where it moves with a path's heading.
@@ -115,6 +119,7 @@ impl CertifiedStretch {
             set_point: law.set_point.clone(),
             measures: law.tracker.is_some(),
             custom: law.custom.clone(),
+            fault: None,
             measured: MeasuredTracking::default(),
             rough_leader: None,
             last_rate: None,
@@ -186,6 +191,7 @@ impl Examiner {
             stretch.final_error = record.edges[index].error;
             let speed = record.snapshot.robots[edge.follower].motion.speed;
             stretch.measured.push(&record.edges[index], speed, self.period);
+            stretch.fault = stretch.fault.take().or_else(|| fault(simulation, edge.follower));
             let mut now = instant(simulation, index, *edge, law, &drives);
             if law.law.heading.filter().is_some() {
                 let change = |before: f64, now: f64| (now - before) / self.period;
@@ -246,6 +252,7 @@ impl Examiner {
                 .then(|| [0, 1].map(|i| formation::certificate::chain::residual(law, i, effect[i]))),
             witness: witness.clone(),
             custom,
+            fault: stretch.fault.clone(),
             measured: stretch.measured,
         }
     }
@@ -288,6 +295,19 @@ impl Examiner {
         (now.turn_rate - last.turn_rate).abs() > STEADY
             || (now.acceleration - last.acceleration).abs() > STEADY
     }
+}
+
+/// Why the custom law of `follower` broke off at the moment that `simulation` has just come to, if it did.
+fn fault(simulation: &Simulation, follower: usize) -> Option<LawFaultMetrics> {
+    let record = simulation.record();
+    let state = record.laws.iter().find(|law| law.robot == follower && !law.fault.is_empty())?;
+    Some(LawFaultMetrics {
+        robot: simulation.fleet().robots[follower].name.clone(),
+        time: record.snapshot.time,
+        // Its next sample is counted already.
+        sample: simulation.sample() - 1,
+        fault: state.fault.clone(),
+    })
 }
 
 /// One edge at the moment that `simulation` has just come to.

@@ -1,5 +1,6 @@
 //! How the settled error answers to every gain: the scene run again with each gain a little larger and a little smaller.
 
+use laws::Parameter;
 use metrics::RootMeanSquare;
 use rayon::prelude::*;
 use scene::{Follow, Role, Scene, SwitchingKind};
@@ -14,7 +15,7 @@ const LATE: f64 = 0.2;
 const ZERO: f64 = 1e-8;
 
 /// A gain of law or observer; channel 0 is distance, 1 bearing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Gain {
     /// K.
     K(usize),
@@ -28,12 +29,20 @@ pub enum Gain {
     Alpha1(usize),
     /// α2.
     Alpha2(usize),
+    /// A parameter of custom laws.
+    Own {
+        /// Its name.
+        name: String,
+        /// Its symbol in the first law that has it.
+        symbol: String,
+    },
 }
 
 impl Gain {
-    /// Symbol with channel.
-    pub fn symbol(self) -> String {
+    /// Symbol, with its channel if it has one.
+    pub fn symbol(&self) -> String {
         let (symbol, channel) = match self {
+            Self::Own { symbol, .. } => return symbol.clone(),
             Self::K(i) => ("k", i),
             Self::Beta(i) => ("β", i),
             Self::Slope(i) => ("slope", i),
@@ -41,29 +50,55 @@ impl Gain {
             Self::Alpha1(i) => ("α1", i),
             Self::Alpha2(i) => ("α2", i),
         };
-        format!("{symbol} {}", ["distance", "bearing"][channel])
+        format!("{symbol} {}", ["distance", "bearing"][*channel])
     }
 
-    fn of(self, follow: &mut Follow) -> &mut f64 {
-        match self {
-            Self::K(i) => &mut follow.law.k[i],
-            Self::Beta(i) => &mut follow.law.beta[i],
-            Self::Slope(i) => &mut follow.law.slope[i],
-            Self::Epsilon(i) => &mut follow.observer.epsilon[i],
-            Self::Alpha1(i) => &mut follow.observer.alpha1[i],
-            Self::Alpha2(i) => &mut follow.observer.alpha2[i],
-        }
+    /// Multiplies it.
+    fn scale(&self, follow: &mut Follow, factor: f64) {
+        *match self {
+            Self::K(i) => &mut follow.law.k[*i],
+            Self::Beta(i) => &mut follow.law.beta[*i],
+            Self::Slope(i) => &mut follow.law.slope[*i],
+            Self::Epsilon(i) => &mut follow.observer.epsilon[*i],
+            Self::Alpha1(i) => &mut follow.observer.alpha1[*i],
+            Self::Alpha2(i) => &mut follow.observer.alpha2[*i],
+            Self::Own { name, .. } => {
+                let Some(value) = own_value(follow, name) else { return };
+                follow.law.parameters.entry(name.clone()).or_insert(value)
+            }
+        } *= factor;
     }
 
     /// Whether a follower's law uses it.
-    fn acts_on(self, follow: &Follow) -> bool {
+    fn acts_on(&self, follow: &Follow) -> bool {
         match self {
+            // One percent of nothing is nothing.
+            Self::Own { name, .. } => own_value(follow, name).is_some_and(|value| value != 0.0),
             Self::K(_) => follow.law.built_in().is_some(),
             Self::Beta(_) => is_robust(follow),
             Self::Slope(_) => is_robust(follow) && follow.law.switching == SwitchingKind::Tanh,
             Self::Epsilon(_) | Self::Alpha1(_) | Self::Alpha2(_) => follow.law.observes(),
         }
     }
+}
+
+/// The parameter called `name` of a follower's custom law.
+fn own_value(follow: &Follow, name: &str) -> Option<f64> {
+    let declared = &follow.law.custom()?.declaration().parameters;
+    let index = declared.iter().position(|parameter| parameter.name == name)?;
+    follow.law.values().get(index).copied()
+}
+
+/// The parameters of all custom laws of a scene, each name once.
+fn own_parameters(scene: &Scene) -> Vec<Gain> {
+    let mut all: Vec<Gain> = vec![];
+    let laws = scene.followers().filter_map(|(_, follow)| follow.law.custom());
+    for Parameter { name, symbol, .. } in laws.flat_map(|law| &law.declaration().parameters) {
+        if !all.iter().any(|gain| matches!(gain, Gain::Own { name: known, .. } if known == name)) {
+            all.push(Gain::Own { name: name.clone(), symbol: symbol.clone() });
+        }
+    }
+    all
 }
 
 /// Whether a follower's law has a switching term.
@@ -94,7 +129,7 @@ pub struct Sensitivities {
 pub fn gains(scene: &Scene) -> Vec<Gain> {
     let kinds: [fn(usize) -> Gain; 6] =
         [Gain::K, Gain::Beta, Gain::Slope, Gain::Epsilon, Gain::Alpha1, Gain::Alpha2];
-    let all = kinds.into_iter().flat_map(|gain| [gain(0), gain(1)]);
+    let all = kinds.into_iter().flat_map(|gain| [gain(0), gain(1)]).chain(own_parameters(scene));
     let follows = |gain: &Gain| scene.followers().any(|(_, follow)| gain.acts_on(follow));
     all.filter(follows).collect()
 }
@@ -109,14 +144,14 @@ pub fn sensitivities(
     look: impl Fn() -> bool + Sync,
 ) -> Result<Option<Sensitivities>, BuildError> {
     let gains = gains(scene);
-    let mut cases: Vec<Option<(Gain, f64)>> = vec![None];
-    cases.extend(gains.iter().flat_map(|gain| [-SHARE, SHARE].map(|share| Some((*gain, share)))));
+    let mut cases: Vec<Option<(&Gain, f64)>> = vec![None];
+    cases.extend(gains.iter().flat_map(|gain| [-SHARE, SHARE].map(|share| Some((gain, share)))));
     let runs = cases.par_iter().map(|case| {
         let mut scene = scene.clone();
         if let Some((gain, share)) = case {
             scene.for_every_robot(|robot| {
                 if let Role::Follow(follow) = &mut robot.role {
-                    *gain.of(follow) *= 1.0 + share;
+                    gain.scale(follow, 1.0 + share);
                 }
             });
         }
@@ -130,7 +165,10 @@ pub fn sensitivities(
             let width = math::ln((1.0 + SHARE) / (1.0 - SHARE));
             (less > ZERO && more > ZERO).then(|| math::ln(more / less) / width)
         };
-        Sensitivity { gain: *gain, edges: (0..own.len()).map(|e| [slope(e, 0), slope(e, 1)]).collect() }
+        Sensitivity {
+            gain: gain.clone(),
+            edges: (0..own.len()).map(|e| [slope(e, 0), slope(e, 1)]).collect(),
+        }
     };
     let gains = gains.iter().zip(rest.chunks_exact(2)).map(sensitivity).collect();
     Ok(Some(Sensitivities { settled: own.clone(), gains }))

@@ -7,7 +7,7 @@ use super::super::law_text::Stretch;
 use super::super::names;
 use super::super::syntax::{Expression, FunctionSyntax, Named};
 use super::super::typed::{Measured, Typed, described};
-use super::{Checker, POWERS, Variable, VariableKind, base_kept};
+use super::{CALLS, Checker, POWERS, Variable, VariableKind, base_kept};
 use crate::unit::Unit;
 
 impl<'a> Checker<'a, '_> {
@@ -87,9 +87,14 @@ impl<'a> Checker<'a, '_> {
             self.scope.push(Variable { name, at, value, kind: VariableKind::Argument });
         }
         let floor = std::mem::replace(&mut self.floor, scope);
+        let visits = self.visits;
         self.calls.push((function.name, at));
         let value = self.value_block(&function.body);
         self.calls.pop();
+        if self.calls.is_empty() {
+            let size = (self.visits - visits) as u64;
+            self.measure(CALLS, size, at, || format!("the call of `{}`", function.name));
+        }
         self.floor = floor;
         self.scope.truncate(scope);
         self.settle(mark, &value);

@@ -255,6 +255,9 @@ impl<'a> Checker<'a, '_> {
             if matches!(stem, "leader" | "wanted" | "frame") || group == "own" {
                 return self.input_of(group, member, at);
             }
+            if let Some(input) = self.input_meant(group, member) {
+                return self.mistake(at, format!("nothing is called `{group}`; did you mean `{input}`?"));
+            }
         }
         let value = self.expression(base);
         let index = match member {
@@ -282,6 +285,28 @@ impl<'a> Checker<'a, '_> {
                 self.mistake(at, format!("{quoted} {}: only a vector has `.{member}`", value.described()))
             }
         }
+    }
+
+    /// The input that `group.member` resembles where nothing is called `group`.
+    fn input_meant(&self, group: &str, member: &str) -> Option<String> {
+        if matches!(member, "x" | "y") || self.is_named(group) {
+            return None;
+        }
+        let inputs = names::input_names(self.leaders);
+        let own = |input: &&String| input.split_once('.').is_some_and(|(_, of)| of == member);
+        // A right member tells more than its group.
+        let exact = inputs.iter().filter(own).map(String::as_str);
+        let nearest = |names: &mut dyn Iterator<Item = &str>| {
+            names::nearest(&format!("{group}.{member}"), names).map(str::to_owned)
+        };
+        nearest(&mut exact.into_iter()).or_else(|| nearest(&mut inputs.iter().map(String::as_str)))
+    }
+
+    /// Whether something of this name is seen here.
+    fn is_named(&self, name: &str) -> bool {
+        self.scope[self.floor..].iter().any(|variable| variable.name == name)
+            || self.memory.iter().any(|memory| memory.name == name)
+            || self.syntax.parameters.iter().any(|parameter| parameter.name == name)
     }
 
     /// `leader.distance` and the like.

@@ -5,7 +5,7 @@ mod calls;
 mod expressions;
 mod statements;
 
-use super::assembler::{Assembler, Operand};
+use super::assembler::{Assembler, COST_MAX, Operand};
 use super::code::Code;
 use super::law_text::{LawText, Stretch};
 use super::mistake::MistakeList;
@@ -89,6 +89,7 @@ pub(super) fn check(
         calls: vec![],
         visits: 0,
         depth: 0,
+        largest: [None, None],
         reads: BTreeSet::new(),
         is_noisy: false,
     };
@@ -153,9 +154,26 @@ struct Checker<'a, 's> {
     calls: Vec<(&'a str, Stretch)>,
     visits: usize,
     depth: usize,
+    /// Of what is written out and what is repeated, the largest: what a law that is too large is to be told.
+    largest: [Option<LargePart>; 2],
     reads: BTreeSet<(usize, InputKind)>,
     is_noisy: bool,
 }
+
+/// A call or a loop, and its share of a law.
+#[derive(Debug)]
+struct LargePart {
+    /// What it is, such as "the loop".
+    what: String,
+    at: Stretch,
+    /// Of a call, parts of the tree; of a loop, instructions executed.
+    size: u64,
+}
+
+/// Index of calls in [`Checker::largest`].
+const CALLS: usize = 0;
+/// Index of loops.
+const LOOPS: usize = 1;
 
 impl Checker<'_, '_> {
     fn mistake(&mut self, at: Stretch, message: impl Into<String>) -> Typed {
@@ -178,7 +196,34 @@ impl Checker<'_, '_> {
 
     fn too_large(&mut self, assembler: &Assembler) {
         if let Some(excess) = assembler.excess() {
-            self.mistakes.add(Stretch::default(), excess);
+            let takes_long = assembler.cost > COST_MAX;
+            let part = if takes_long {
+                self.most_of(LOOPS, assembler.cost).or_else(|| self.most_of(CALLS, self.visits as u64))
+            } else {
+                self.most_of(CALLS, self.visits as u64)
+            };
+            self.say_too_large(&excess, part);
+        }
+    }
+
+    /// Notes that a law is too large, where its largest part stands if that is most of it.
+    fn say_too_large(&mut self, what: &str, part: Option<(String, Stretch)>) {
+        match part {
+            Some((part, at)) => self.mistakes.add(at, format!("{what}; {part} is most of it")),
+            None => self.mistakes.add(Stretch::default(), what),
+        }
+    }
+
+    /// The largest call or loop, if it is more than half of `all`.
+    fn most_of(&self, kind: usize, all: u64) -> Option<(String, Stretch)> {
+        let part = self.largest[kind].as_ref().filter(|part| part.size > all / 2)?;
+        Some((format!("{} in line {}", part.what, self.line(part.at)), part.at))
+    }
+
+    /// Notes the size of a call or a loop.
+    fn measure(&mut self, kind: usize, size: u64, at: Stretch, what: impl FnOnce() -> String) {
+        if self.largest[kind].as_ref().is_none_or(|part| part.size < size) {
+            self.largest[kind] = Some(LargePart { what: what(), at, size });
         }
     }
 
@@ -316,7 +361,8 @@ impl Checker<'_, '_> {
         }
         for assembler in [&start, &assembler] {
             if assembler.overflows() || self.visits >= VISITS_MAX {
-                self.mistakes.add(Stretch::default(), TOO_LARGE);
+                let part = self.most_of(CALLS, self.visits as u64);
+                self.say_too_large(TOO_LARGE, part);
             }
             self.too_large(assembler);
         }

@@ -6,7 +6,7 @@ use super::super::law_text::Stretch;
 use super::super::names;
 use super::super::syntax::{Block, Choice, Expression, ExpressionKind, Named, Statement};
 use super::super::typed::{Measured, Typed};
-use super::{Checker, VISITS_MAX, Variable, VariableKind, register_of, with_bare_zero_as_number};
+use super::{Checker, LOOPS, VISITS_MAX, Variable, VariableKind, register_of, with_bare_zero_as_number};
 use crate::unit::Unit;
 
 impl<'a> Checker<'a, '_> {
@@ -23,7 +23,7 @@ impl<'a> Checker<'a, '_> {
                 Statement::If(choice) => self.branch(choice),
                 Statement::Repeat { count, counter, body, at } => {
                     self.assembler.origin.at = *at;
-                    self.repeat(*count, counter.as_ref(), body);
+                    self.repeat(*count, counter.as_ref(), body, *at);
                 }
             }
             self.assembler.origin.owner = owner;
@@ -281,7 +281,13 @@ impl<'a> Checker<'a, '_> {
         }
     }
 
-    pub(super) fn repeat(&mut self, count: u32, counter: Option<&Named<'a, ()>>, body: &Block<'a>) {
+    pub(super) fn repeat(
+        &mut self,
+        count: u32,
+        counter: Option<&Named<'a, ()>>,
+        body: &Block<'a>,
+        at: Stretch,
+    ) {
         let mark = self.assembler.mark();
         let register = self.assembler.reserve();
         self.assembler.put(register, Operand::Constant(1.0));
@@ -299,7 +305,9 @@ impl<'a> Checker<'a, '_> {
         self.scope.truncate(scope);
         self.assembler.again(from, register, count);
         let round = self.assembler.cost - before;
-        self.assembler.cost = before.saturating_add(round.saturating_mul(u64::from(count)));
+        let rounds = round.saturating_mul(u64::from(count));
+        self.assembler.cost = before.saturating_add(rounds);
+        self.measure(LOOPS, rounds, at, || "the loop".to_owned());
         self.assembler.release(mark);
     }
 
