@@ -29,6 +29,11 @@ impl Diagnostics {
         &self.0
     }
 
+    /// One thing that is wrong with a whole file.
+    pub fn of_file(path: &Path, message: &str) -> Self {
+        Self::whole_file(path, [message.to_owned()])
+    }
+
     pub(crate) fn whole_file(path: &Path, messages: impl IntoIterator<Item = String>) -> Self {
         let origin = path.display().to_string();
         let one = |message| Diagnostic { origin: origin.clone(), width: 1, message, ..Diagnostic::default() };

@@ -113,6 +113,8 @@ impl Counting {
             name: "bound".to_owned(),
             symbol: "b".to_owned(),
             unit: Unit::NUMBER,
+            unit_name: String::new(),
+            unit_size: 1.0,
             default: 3.0,
             range: [0.0, 10.0],
             scale: Scale::Linear,
