@@ -97,6 +97,8 @@ struct CertifiedStretch {
     set_point: SetPointTrajectory,
     measures: bool,
     custom: Option<Custom>,
+    /// Whether the law is one of the paper's.
+    built_in: bool,
     measured: MeasuredTracking,
     rough_leader: Option<f64>,
     /// Of the bearing's set point, rad/s, where it moves with a path's heading.
@@ -115,6 +117,7 @@ impl CertifiedStretch {
             set_point: law.set_point.clone(),
             measures: law.tracker.is_some(),
             custom: law.custom.clone(),
+            built_in: law.is_built_in(),
             measured: MeasuredTracking::default(),
             rough_leader: None,
             last_rate: None,
@@ -132,6 +135,7 @@ impl CertifiedStretch {
             && self.set_point == law.set_point
             && self.measures == law.tracker.is_some()
             && self.custom == law.custom
+            && self.built_in == law.is_built_in()
     }
 }
 
@@ -224,14 +228,14 @@ impl Examiner {
             held: (self.mode != TimeMode::Continuous).then_some(self.period),
             sampled_measurement: self.mode == TimeMode::Measured,
             measures: stretch.measures,
-            custom: stretch.custom.is_some(),
+            custom: !stretch.built_in,
             wheels: wheels(edge.leader) || wheels(edge.follower),
             several_leaders: several,
             rough_leader: stretch.rough_leader,
         };
         let law = &witness.law;
         let effect = witness.last_effect();
-        let custom = stretch.custom.is_some();
+        let custom = !stretch.built_in;
         let smoothed =
             !custom && law.kind != LawKind::FullState && matches!(law.switching, Switching::Tanh(_));
         Certificate {
@@ -278,8 +282,8 @@ impl Examiner {
         }
         if self.mode == TimeMode::Continuous {
             let Some(above) = above else { return false };
-            let EdgeLaw { law, custom, .. } = &formation.laws()[above];
-            let sign = custom.is_none() && law.kind != LawKind::FullState && law.switching == Switching::Sign;
+            let (built_in, law) = (formation.laws()[above].is_built_in(), &formation.laws()[above].law);
+            let sign = built_in && law.kind != LawKind::FullState && law.switching == Switching::Sign;
             return sign || simulation.record().edges[above].limited;
         }
         let (Some(last), Some(now)) = (self.last.get(edge.leader), drives.get(edge.leader)) else {
