@@ -10,7 +10,17 @@ from ._film import Film
 from ._law import Law
 from ._run import Expectation
 
-__all__: list[str]
+__all__ = [
+    "EDGE_COLUMNS",
+    "INPUTS",
+    "ROBOT_COLUMNS",
+    "Run",
+    "Scene",
+    "Simulation",
+    "Table",
+    "__version__",
+    "scenes",
+]
 __version__: str
 ROBOT_COLUMNS: list[str]
 EDGE_COLUMNS: list[str]
