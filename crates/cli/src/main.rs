@@ -20,8 +20,6 @@ mod lab;
 mod laws;
 mod link;
 mod load;
-mod picture;
-mod playback;
 mod print;
 mod program;
 mod progress;
@@ -33,7 +31,7 @@ mod run;
 mod scenes;
 mod stills;
 mod summary;
-mod times;
+mod terminal;
 mod tune;
 mod welcome;
 

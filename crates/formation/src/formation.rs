@@ -13,7 +13,7 @@ use crate::observer::Estimate;
 use crate::relative::Geometry;
 use crate::set_point::SetPointTrajectory;
 use crate::standing::StandingInput;
-use laws::{Input, Noise};
+use laws::{BatchInput, BatchLaw, Input, Knowledge, LeaderInput, Noise};
 use std::sync::Arc;
 use vocabulary::{
     Command, Edge, Limits, MotionInput, MotionPhase, Observation, TrackingState, Trajectory, wrap,
@@ -45,6 +45,8 @@ pub struct FormationState {
     pub memories: Vec<EdgeMemory>,
     /// What custom laws carry, per edge; of a follower with several leaders on its first edge.
     pub customs: Vec<CustomState>,
+    /// Per robot: what a law for many followers asked for last; `None` where none did.
+    batch: Vec<Option<Command>>,
     /// Per robot: what it is told; for a lead robot its prescribed motion.
     pub commands: Vec<Command>,
     drives: Vec<MotionInput>,
@@ -173,6 +175,7 @@ impl Formation {
             decisions: vec![Decision::default(); self.edges.len()],
             memories: vec![EdgeMemory::default(); self.edges.len()],
             customs: vec![CustomState::default(); self.edges.len()],
+            batch: vec![None; robots],
             commands: vec![Command::default(); robots],
             drives: vec![MotionInput::default(); robots],
             turn_rates: [None, None],
@@ -193,11 +196,41 @@ impl Formation {
         state: &mut FormationState,
         filter: &mut dyn FnMut(usize, Command) -> Command,
     ) {
-        self.remember(time, observations, state);
-        state.differentiate_turn_rates(self.period);
+        self.begin(time, observations, state);
         let mut rates = self.continuous.then(|| vec![vec![]; self.edges.len()]);
         self.evaluate_through(time, observations, state, filter, rates.as_deref_mut());
         state.remember_turn_rates();
+    }
+
+    /// As [`Formation::decide_through`], where `batch` decides for the followers whose [`EdgeLaw::batch`] says so.
+    ///
+    /// # Errors
+    /// [`laws::Fault`] where it gives no commands; `state` is then of no use.
+    pub fn decide_with(
+        &self,
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        batch: &mut dyn BatchLaw,
+        filter: &mut dyn FnMut(usize, Command) -> Command,
+    ) -> Result<(), laws::Fault> {
+        self.begin(time, observations, state);
+        self.lead(time, state, filter);
+        let stages = match batch.knows() {
+            Knowledge::Output => vec![self.graph.evaluation_order().to_vec()],
+            Knowledge::Rates | Knowledge::Motion => self.graph.depths(),
+        };
+        for stage in &stages {
+            self.ask_batch(batch, stage, time, observations, state)?;
+            self.follow(stage, time, observations, state, filter, None);
+        }
+        state.remember_turn_rates();
+        Ok(())
+    }
+
+    fn begin(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
+        self.remember(time, observations, state);
+        state.differentiate_turn_rates(self.period);
     }
 
     /// Carries what followers remember of their leaders on to this sample.
@@ -258,8 +291,14 @@ impl Formation {
         observations: &[Observation],
         state: &mut FormationState,
         filter: &mut dyn FnMut(usize, Command) -> Command,
-        mut rates: Option<&mut [Vec<f64>]>,
+        rates: Option<&mut [Vec<f64>]>,
     ) {
+        self.lead(time, state, filter);
+        self.follow(self.graph.evaluation_order(), time, observations, state, filter, rates);
+    }
+
+    /// Those who follow nobody take their prescribed motion.
+    fn lead(&self, time: f64, state: &mut FormationState, filter: &mut dyn FnMut(usize, Command) -> Command) {
         for (robot, trajectory) in &self.leads {
             let mut drive = trajectory.at(time);
             let prescribed = Command { acceleration: drive.acceleration, turn_rate: drive.turn_rate };
@@ -272,7 +311,19 @@ impl Formation {
             state.drives[*robot] = drive;
             state.commands[*robot] = told;
         }
-        for &index in self.graph.evaluation_order() {
+    }
+
+    /// The followers of the edges `order` decide, one after the other.
+    fn follow(
+        &self,
+        order: &[usize],
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        filter: &mut dyn FnMut(usize, Command) -> Command,
+        mut rates: Option<&mut [Vec<f64>]>,
+    ) {
+        for &index in order {
             let follower = self.edges()[index].follower;
             let own = self.graph.edges_of(follower);
             // A follower with several leaders decides once.
@@ -328,6 +379,7 @@ impl Formation {
         };
         let (parameters, seen) = (&self.edges[first], &observations[first]);
         let asked = match &parameters.custom {
+            _ if parameters.batch.is_some() => state.batch[self.edges()[first].follower],
             None => Some(parameters.law.command(&views[0].law_input())),
             Some(custom) => self.ask(custom, first, time, views, state, rates),
         };
@@ -401,26 +453,72 @@ impl Formation {
             several = views.iter().map(|view| view.leader_input(law)).collect::<Vec<_>>();
             &several
         };
-        let follower = self.edges()[first].follower;
-        let last = state.decisions[first].applied;
-        let input = Input {
-            time,
-            period: self.period,
-            own_speed: views[0].own_speed,
-            own_acceleration: last.acceleration,
-            own_turn_rate: last.turn_rate,
-            leaders,
-            noise: Noise {
-                seed: self.seed,
-                robot: follower as u64,
-                sample: (time / self.period).round() as u64,
-            },
-        };
+        let input = self.input(first, time, views[0].own_speed, leaders, state);
         let law = &mut state.customs[first];
         match rates {
             None => law.decide(custom, &input),
             Some(rates) => law.derive(custom, &input, rates),
         }
+    }
+
+    /// What the law of the follower of edge number `first` is told.
+    fn input<'a>(
+        &self,
+        first: usize,
+        time: f64,
+        own_speed: f64,
+        leaders: &'a [LeaderInput],
+        state: &FormationState,
+    ) -> Input<'a> {
+        let last = state.decisions[first].applied;
+        Input {
+            time,
+            period: self.period,
+            own_speed,
+            own_acceleration: last.acceleration,
+            own_turn_rate: last.turn_rate,
+            leaders,
+            noise: Noise {
+                seed: self.seed,
+                robot: self.edges()[first].follower as u64,
+                sample: (time / self.period).round() as u64,
+            },
+        }
+    }
+
+    /// Asks `batch` for the commands of its followers among those of the edges `stage`; those who do not know where their
+    /// leader is are left out.
+    fn ask_batch(
+        &self,
+        batch: &mut dyn BatchLaw,
+        stage: &[usize],
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+    ) -> Result<(), laws::Fault> {
+        let asked = |edge: &usize| self.edges[*edge].batch.is_some() && !unseen(&observations[*edge]);
+        let mut edges: Vec<usize> = stage.iter().copied().filter(asked).collect();
+        edges.sort_by_key(|edge| self.edges()[*edge].follower);
+        let view = |edge: &usize| self.view(*edge, time, &observations[*edge], state);
+        let views: Vec<EdgeView> = edges.iter().map(view).collect();
+        let leader = |(edge, view): (&usize, &EdgeView)| view.leader_input(&self.edges[*edge].law);
+        let leaders: Vec<LeaderInput> = edges.iter().zip(&views).map(leader).collect();
+        let mut inputs = Vec::with_capacity(edges.len());
+        for ((edge, view), leader) in edges.iter().zip(&views).zip(leaders.chunks(1)) {
+            inputs.push(BatchInput {
+                robot: self.edges()[*edge].follower,
+                meets: state.customs[*edge].meets(),
+                input: self.input(*edge, time, view.own_speed, leader, state),
+            });
+        }
+        if inputs.is_empty() {
+            return Ok(());
+        }
+        let commands = batch.decide(&inputs)?;
+        for (input, command) in inputs.iter().zip(commands) {
+            state.batch[input.robot] = Some(command);
+        }
+        Ok(())
     }
 
     /// A decision with what belongs to one edge.

@@ -1,5 +1,6 @@
 //! What is wrong with a scene, and where.
 
+use crate::text::words::suggested;
 use std::{fmt, path::Path};
 
 /// One thing that is wrong.
@@ -17,6 +18,13 @@ pub struct Diagnostic {
     pub width: usize,
     /// What is wrong and what would be right.
     pub message: String,
+}
+
+impl Diagnostic {
+    /// The word that may have been meant, if the message names one.
+    pub fn suggestion(&self) -> Option<&str> {
+        suggested(&self.message)
+    }
 }
 
 /// Everything that is wrong, in the order of the text; never empty.

@@ -1,5 +1,6 @@
 //! A simulation: its state, its queries, and the changes that it takes between steps.
 
+use crate::batch::{BatchError, BatchPipeline};
 use crate::chase::Chases;
 use crate::events::Events;
 use crate::fault::Fault;
@@ -10,11 +11,12 @@ use crate::sensing::SensingPipeline;
 use crate::setup::Setup;
 use crate::step::step;
 use formation::{Decision, EdgeLaw, Estimate, Formation, FormationState};
+use laws::BatchLaw;
 use std::collections::VecDeque;
 use std::sync::Arc;
 use vocabulary::{
-    CameraRenderer, EdgeState, FleetInfo, MeasurementRecord, Observation, ObserverStart, Relative,
-    StepRecord, TimeMode,
+    CameraRenderer, EdgeState, EntityId, FleetInfo, Limits, MeasurementRecord, Observation, ObserverStart,
+    Relative, StepRecord, TimeMode,
 };
 use world::Handling;
 
@@ -30,6 +32,8 @@ pub struct Simulation {
     pub(crate) observations: Vec<Observation>,
     pub(crate) sensing: Option<SensingPipeline>,
     pub(crate) safety: Option<SafetyPipeline>,
+    /// A law that decides for many followers.
+    pub(crate) batch: Option<BatchPipeline>,
     /// Robots that lead by commands.
     pub(crate) chases: Chases,
     pub(crate) events: Events,
@@ -92,6 +96,7 @@ impl Simulation {
             observations,
             sensing,
             safety,
+            batch: None,
             frames: Vec::new(),
             spare: record.clone(),
             record,
@@ -140,6 +145,45 @@ impl Simulation {
         if let Some(sensing) = &mut self.sensing {
             sensing.open(eyes);
         }
+    }
+
+    /// Attaches a law that decides for `followers`, numbers of robots, in the place of their own laws; before the first step.
+    ///
+    /// # Errors
+    /// [`BatchError`], naming the robot.
+    pub fn attach_law(&mut self, law: Box<dyn BatchLaw>, followers: &[usize]) -> Result<(), BatchError> {
+        let name = |robot: usize| self.fleet.name(EntityId::Robot(robot)).to_owned();
+        if self.mode == TimeMode::Continuous {
+            return Err(BatchError::Continuous);
+        }
+        if self.sample > 0 {
+            return Err(BatchError::Begun(self.sample));
+        }
+        let mut decides_for = vec![false; self.fleet.robots.len()];
+        for robot in followers {
+            match self.fleet.edges_of(*robot).count() {
+                0 => return Err(BatchError::Leads(name(*robot))),
+                1 => decides_for[*robot] = true,
+                _ => return Err(BatchError::SeveralLeaders(name(*robot))),
+            }
+        }
+        self.fleet.caption = format!("law {}", law.name());
+        let batch = BatchPipeline { law, decides_for };
+        let mut laws = self.formation.laws().to_vec();
+        batch.mark(self.formation.edges(), &mut laws);
+        self.formation.apply_parameters(laws, self.limits());
+        self.batch = Some(batch);
+        Ok(())
+    }
+
+    /// Bounds of all robots.
+    fn limits(&self) -> Vec<Limits> {
+        (0..self.fleet.robots.len()).map(|robot| *self.formation.limits(robot)).collect()
+    }
+
+    /// Whether the last sample has been computed, or the run ended before it.
+    pub fn is_over(&self) -> bool {
+        self.sample > self.last_sample || self.stopped || self.fault.is_some()
     }
 
     /// Why the run ended before its time, if a fault ended it.
@@ -201,7 +245,7 @@ impl Simulation {
     /// Followers observe the true state from now on, whatever their sensors: for predictions, which draw no pictures.
     pub fn trust(&mut self) {
         self.sensing = None;
-        let limits = (0..self.fleet.robots.len()).map(|robot| *self.formation.limits(robot)).collect();
+        let limits = self.limits();
         self.formation.apply_parameters(trusting(self.formation.laws()), limits);
         let told = |parameters: &ParameterSet| ParameterSet {
             laws: trusting(&parameters.laws),

@@ -47,4 +47,4 @@ pub use record_source::RecordSource;
 #[cfg(not(target_family = "wasm"))]
 pub use scene_run::run_options;
 pub use scene_run::{COMMIT, PROGRAM, RendererFactory, STRIDE, SceneRun};
-pub use simulation::{Fault, caption, gates, in_line, too_slow_leads};
+pub use simulation::{Fault, caption};
