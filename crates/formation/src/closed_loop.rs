@@ -178,7 +178,7 @@ impl ClosedLoop<'_> {
         let memory = &mut next[OWN..];
         let decided = self
             .with_input(state, sample, |input| self.law.decide(input, self.parameters, memory, &mut shown));
-        let command = decided.map_err(|fault| self.dated(fault, sample))?;
+        let command = decided.map_err(|fault| self.dated(&fault, sample))?;
         let h = self.leaders.period / f64::from(STEPS);
         let mut body = [state[0], state[1], state[2], state[3]];
         let rate = |[x, y, heading, speed]: [f64; 4]| {
@@ -205,9 +205,9 @@ impl ClosedLoop<'_> {
     }
 
     /// A fault with the time at which it happened.
-    fn dated(&self, fault: Fault, sample: u64) -> Fault {
+    fn dated(&self, fault: &Fault, sample: u64) -> Fault {
         let time = sample as f64 * self.leaders.period;
-        Fault { message: format!("{} (t = {time:.2} s)", fault.message), ..fault }
+        Fault { place: fault.place, message: format!("{} (t = {time:.2} s)", fault.message) }
     }
 
     fn error(&self, leader: usize, state: &[f64]) -> [f64; 2] {
