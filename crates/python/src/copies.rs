@@ -23,32 +23,6 @@ use studies::copies::{
 use vocabulary::{Command, FleetInfo, StepRecord};
 
 /// Many copies of a scene, whose followers are driven by actions. `echelon.envs` has environments for learning on top of it.
-///
-/// Parameters
-/// ----------
-/// scene : Scene
-///     What is copied.
-/// count : int
-///     Number of copies.
-/// agents : list of str
-///     Followers that are driven by actions; the others keep their laws.
-/// columns : list of (str, float, float)
-///     What each agent observes: a name of `INPUTS`, ``error.distance``, ``error.bearing``, ``error.distance_rate`` or
-///     ``error.bearing_rate``, or ``sin(…)`` or ``cos(…)`` of one; what becomes 1; and the bound on what comes out.
-/// scale : list of (float, float)
-///     Per agent, what an action of 1 is: acceleration, m/s², and turn rate, rad/s.
-/// residual : bool, optional
-///     Adds actions to what the scene's laws ask for.
-/// samples : int, optional
-///     Control samples for which an action holds.
-/// scatter : (list of str, float, float), optional
-///     Robots that start elsewhere in every episode, within how many m and rad.
-/// drawn : bool, optional
-///     Keeps what pictures show of the past.
-/// threads : int, optional
-///     Threads that share the work; one per processor by default.
-/// adapter : str, optional
-///     Graphics adapter for `render`.
 #[pyclass(name = "Copies", module = "echelon._echelon", frozen)]
 pub(crate) struct PyCopies {
     scene: Scene,
@@ -162,13 +136,40 @@ impl PyCopies {
 
 #[pymethods]
 impl PyCopies {
+    /// Makes copies none of which has an episode yet.
+    ///
+    /// Parameters
+    /// ----------
+    /// scene : Scene
+    ///     What is copied.
+    /// count : int
+    ///     Number of copies.
+    /// agents : list of str
+    ///     Followers that are driven by actions; the others keep their laws.
+    /// columns : list of (str, float, float)
+    ///     What each agent observes: a name of `INPUTS`, ``error.distance``, ``error.bearing``, ``error.distance_rate`` or
+    ///     ``error.bearing_rate``, or ``sin(…)`` or ``cos(…)`` of one; what becomes 1; and the bound on what comes out.
+    /// scale : list of (float, float)
+    ///     Per agent, what an action of 1 is: acceleration, m/s², and turn rate, rad/s.
+    /// residual : bool, optional
+    ///     Adds actions to what the scene's laws ask for.
+    /// samples : int, optional
+    ///     Control samples for which an action holds.
+    /// scatter : (list of str, float, float), optional
+    ///     Robots that start elsewhere in every episode, within how many m and rad.
+    /// drawn : bool, optional
+    ///     Keeps what pictures show of the past.
+    /// threads : int, optional
+    ///     Threads that share the work; one per processor by default.
+    /// adapter : str, optional
+    ///     Graphics adapter for `render`.
     #[new]
     #[pyo3(signature = (
         scene, count, *, agents, columns, scale, residual=false, samples=1, scatter=(vec![], 0.0, 0.0), drawn=false,
         threads=None, adapter="auto"
     ))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-    fn new(
+    fn __new__(
         scene: &PyScene,
         count: usize,
         agents: Vec<String>,

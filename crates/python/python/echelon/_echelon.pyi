@@ -14,6 +14,8 @@ __all__ = [
     "EDGE_COLUMNS",
     "INPUTS",
     "ROBOT_COLUMNS",
+    "SIGNALS",
+    "Copies",
     "Run",
     "Scene",
     "Simulation",
@@ -25,6 +27,7 @@ __version__: str
 ROBOT_COLUMNS: list[str]
 EDGE_COLUMNS: list[str]
 INPUTS: list[tuple[str, str, str]]
+SIGNALS: list[str]
 
 def scenes() -> dict[str, str]:
     """The scenes that come with the package."""
@@ -427,3 +430,31 @@ class Simulation:
             Edges × columns; `echelon.EDGE_COLUMNS` names the columns, which end in their units. Flags are 0 or 1. Rows of edges
             whose follower follows nobody are NaN.
         """
+
+class Copies:
+    def __new__(
+        cls,
+        scene: Scene,
+        count: int,
+        *,
+        agents: Sequence[str],
+        columns: Sequence[tuple[str, float, float]],
+        scale: Sequence[tuple[float, float]],
+        residual: bool = False,
+        samples: int = 1,
+        scatter: tuple[Sequence[str], float, float] = ...,
+        drawn: bool = False,
+        threads: int | None = None,
+        adapter: str = "auto",
+    ) -> Copies:
+    def reset(self, seeds: Sequence[int | None], numbers: Sequence[int]) -> None:
+    def step(
+        self, actions: NDArray[np.float64], idle: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8]]:
+    def observe(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8]]:
+    def told(self) -> NDArray[np.float64]:
+    def render(
+        self, copy: int, view: str | None = None, size: Sequence[int] | None = None
+    ) -> NDArray[np.uint8]:
+    @property
+    def digests(self) -> list[str]:
