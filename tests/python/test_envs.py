@@ -322,6 +322,7 @@ class TestBadInput:
             (lambda: Task(dtype="int8"), "float32"),
             (lambda: Task(scales={"own.speed": 0.0}), "own.speed"),
             (lambda: Task(observation="own.speed"), "tuple"),
+            (lambda: Scatter(heading=-1), "heading of a scatter"),
             (lambda: LawPolicy(echelon.Law(lambda *_: 0, knows="motion"), FormationEnv(SCENE)), "motion"),
             (lambda: LawPolicy(output_feedback(SCENE), FormationEnv(SCENE, Task(residual=True))), "added"),
         ],

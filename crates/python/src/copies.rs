@@ -76,15 +76,35 @@ fn of_copies(error: &CopyError) -> PyErr {
     }
 }
 
+fn wrong(text: &str) -> PyErr {
+    PyValueError::new_err(text.to_owned())
+}
+
 /// The robots of these names.
 fn robots_called(scene: &Scene, names: &[String]) -> PyResult<Vec<usize>> {
-    let index = |name: &String| {
-        let known = || scene.robots.iter().map(|robot| &*robot.name).collect::<Vec<_>>().join(", ");
-        scene.index_of(name).ok_or_else(|| {
-            PyValueError::new_err(format!("there is no robot called `{name}`: there is {}", known()))
-        })
+    let known = || scene.robots.iter().map(|robot| &*robot.name).collect::<Vec<_>>().join(", ");
+    let unknown = |name: &str| wrong(&format!("there is no robot called `{name}`: there is {}", known()));
+    names.iter().map(|name| scene.index_of(name).ok_or_else(|| unknown(name))).collect()
+}
+
+/// The followers of these names, with what an action of 1 is for each.
+fn agents_called(scene: &Scene, names: &[String], scale: &[[f64; 2]]) -> PyResult<Vec<Agent>> {
+    let robots = robots_called(scene, names)?;
+    let agent = |((robot, name), [acceleration, turn_rate]): ((usize, &String), &[f64; 2])| {
+        let edge = scene.edges().position(|(follower, ..)| follower == name);
+        let edge = edge.ok_or_else(|| wrong(&format!("`{name}` follows nobody: agents are followers")))?;
+        Ok(Agent { robot, edge, scale: Command { acceleration: *acceleration, turn_rate: *turn_rate } })
     };
-    names.iter().map(index).collect()
+    robots.into_iter().zip(names).zip(scale).map(agent).collect()
+}
+
+/// A column by name, scale and bound.
+fn column((name, scale, limit): &(String, f64, f64)) -> PyResult<Column> {
+    if !(*scale > 0.0 && *limit > 0.0) {
+        return Err(wrong(&format!("the scale and the bound of `{name}` are positive numbers")));
+    }
+    let column: Column = name.parse().map_err(|text: String| wrong(&text))?;
+    Ok(column.scaled(*scale, *limit))
 }
 
 impl PyCopies {
@@ -135,6 +155,7 @@ impl PyCopies {
 }
 
 #[pymethods]
+#[expect(clippy::needless_pass_by_value, reason = "pyo3 hands over values")]
 impl PyCopies {
     /// Makes copies none of which has an episode yet.
     ///
@@ -183,49 +204,30 @@ impl PyCopies {
         adapter: &str,
     ) -> PyResult<Self> {
         let scene = scene.scene().clone();
-        let wrong = |text: &str| PyValueError::new_err(text.to_owned());
         if count == 0 || samples == 0 || agents.is_empty() || scale.len() != agents.len() {
             return Err(wrong(
                 "copies need one copy, agent and sample at least, and a scale for every agent",
             ));
         }
-        let robots = robots_called(&scene, &agents)?;
-        let edges: Vec<&str> = scene.edges().map(|(name, ..)| name).collect();
-        let agent = |((robot, name), [acceleration, turn_rate]): ((&usize, &String), &[f64; 2])| {
-            let edge = edges.iter().position(|follower| *follower == name.as_str());
-            let edge =
-                edge.ok_or_else(|| wrong(&format!("`{name}` follows nobody: agents are followers")))?;
-            Ok(Agent {
-                robot: *robot,
-                edge,
-                scale: Command { acceleration: *acceleration, turn_rate: *turn_rate },
-            })
-        };
-        let agents: Vec<Agent> =
-            robots.iter().zip(&agents).zip(&scale).map(agent).collect::<PyResult<_>>()?;
-        let column = |(name, scale, limit): &(String, f64, f64)| {
-            if !(*scale > 0.0 && *limit > 0.0) {
-                return Err(wrong(&format!("the scale and the bound of `{name}` are positive numbers")));
-            }
-            let column: Column = name.parse().map_err(|text: String| wrong(&text))?;
-            Ok(column.scaled(*scale, *limit))
-        };
-        let columns = columns.iter().map(column).collect::<PyResult<Vec<_>>>()?;
         let (names, position, heading) = scatter;
-        let scatter = Scatter { robots: robots_called(&scene, &names)?, position, heading };
-        let caption = Some(if residual { "law and actions" } else { "actions" }.to_owned());
+        let config = CopyConfig {
+            agents: agents_called(&scene, &agents, &scale)?,
+            columns: columns.iter().map(column).collect::<PyResult<_>>()?,
+            residual,
+            samples,
+            scatter: Scatter { robots: robots_called(&scene, &names)?, position, heading },
+            caption: Some(if residual { "law and actions" } else { "actions" }.to_owned()),
+        };
         let pool = threads.map(|threads| ThreadPoolBuilder::new().num_threads(threads).build());
         let pool = pool.transpose().map_err(|error| wrong(&error.to_string()))?;
-        let (few, wide) = (agents.len(), columns.len());
-        let config = CopyConfig { agents, columns, residual, samples, scatter, caption };
         let sink = move |fleet: &FleetInfo| Kept {
             digest: Box::default(),
             drawn: drawn.then(|| Box::new(Drawn { fleet: fleet.clone(), trail: Trail::new(fleet) })),
         };
         Ok(Self {
             count,
-            agents: few,
-            columns: wide,
+            agents: agents.len(),
+            columns: columns.len(),
             adapter: adapter.to_owned(),
             copies: Mutex::new(Copies::new(scene.clone(), config, count, pool, sink)),
             scene,

@@ -205,22 +205,15 @@ impl<S: RecordSink> Copies<S> {
     /// [`CopyError::Broken`] where a copy cannot begin.
     pub fn reset(&mut self, episodes: &[Option<Episode>]) -> Result<(), CopyError> {
         let Self { scene, config, slots, sink, pool } = self;
-        let begin = |(copy, (slot, episode)): (usize, (&mut Slot<S>, &Option<Episode>))| {
-            let Some(episode) = episode else { return Ok(()) };
+        let begun = slots.iter_mut().zip(episodes).enumerate();
+        let begun = begun.filter_map(|(copy, (slot, episode))| Some((copy, slot, (*episode)?)));
+        share(pool.as_ref(), begun.collect(), |(copy, slot, episode)| {
             slot.progress = Progress::Blank;
-            let copied = Copied::begin(scene.clone(), config, *episode, sink);
+            let copied = Copied::begin(scene.clone(), config, episode, sink);
             slot.copied = Some(copied.map_err(|error| CopyError::Broken { copy, error })?);
             slot.progress = Progress::Running;
             Ok(())
-        };
-        if slots.len() < SHARED_FROM {
-            return slots.iter_mut().zip(episodes).enumerate().try_for_each(begin);
-        }
-        let mut all = || slots.par_iter_mut().zip(episodes).enumerate().try_for_each(begin);
-        match pool {
-            Some(pool) => pool.install(&mut all),
-            None => all(),
-        }
+        })
     }
 
     /// Drives every copy on by one action, copies × agents × [`ACTION`], each −1 to 1 and cut there; those that are `idle` stay
@@ -283,27 +276,45 @@ impl<S: RecordSink> Copies<S> {
         let Outcome { observations, signals, progress } = outcome;
         let agents = config.agents.len();
         let [wide, told] = [config.columns.len(), SIGNALS.len()].map(|columns| (columns * agents).max(1));
-        let one = |(copy, (((slot, seen), signals), progress)): (
-            usize,
-            (((&mut Slot<S>, &mut [f64]), &mut [f64]), &mut Progress),
-        )| {
-            work(config, copy, slot)?;
-            *progress = slot.progress;
-            slot.write(config, seen, signals).map_err(|fault| fault.of(copy))
-        };
-        if slots.len() < SHARED_FROM {
-            let rows = slots.iter_mut().zip(observations.chunks_mut(wide)).zip(signals.chunks_mut(told));
-            return rows.zip(progress).enumerate().try_for_each(one);
-        }
-        let mut all = || {
-            let rows =
-                slots.par_iter_mut().zip(observations.par_chunks_mut(wide)).zip(signals.par_chunks_mut(told));
-            rows.zip(progress.par_iter_mut()).enumerate().with_min_len(SHARE).try_for_each(&one)
-        };
-        match pool {
-            Some(pool) => pool.install(&mut all),
-            None => all(),
-        }
+        let rows = slots.iter_mut().zip(observations.chunks_mut(wide)).zip(signals.chunks_mut(told));
+        let rows = rows.zip(progress).enumerate();
+        let rows = rows.map(|(copy, (((slot, seen), signals), progress))| Row {
+            copy,
+            slot,
+            seen,
+            signals,
+            progress,
+        });
+        share(pool.as_ref(), rows.collect(), |row| {
+            work(config, row.copy, row.slot)?;
+            *row.progress = row.slot.progress;
+            row.slot.write(config, row.seen, row.signals).map_err(|fault| fault.of(row.copy))
+        })
+    }
+}
+
+/// A copy, and where what it comes to is written.
+struct Row<'a, S> {
+    copy: usize,
+    slot: &'a mut Slot<S>,
+    seen: &'a mut [f64],
+    signals: &'a mut [f64],
+    progress: &'a mut Progress,
+}
+
+/// Does `work` with each of `items`, on the threads of `pool` or rayon's own where there are many.
+fn share<T: Send>(
+    pool: Option<&ThreadPool>,
+    items: Vec<T>,
+    work: impl Fn(T) -> Result<(), CopyError> + Send + Sync,
+) -> Result<(), CopyError> {
+    if items.len() < SHARED_FROM {
+        return items.into_iter().try_for_each(work);
+    }
+    let all = || items.into_par_iter().with_min_len(SHARE).try_for_each(work);
+    match pool {
+        Some(pool) => pool.install(all),
+        None => all(),
     }
 }
 
@@ -444,3 +455,6 @@ impl<S: RecordSink> Copied<S> {
 fn broken(simulation: &Simulation) -> Error {
     simulation.fault().map_or_else(|| Error::Usage("the run has no further sample".to_owned()), Error::from)
 }
+
+#[cfg(test)]
+mod tests;

@@ -84,6 +84,12 @@ class Scatter:
     heading: float = 0.3
     robots: Iterable[str] | None = None
 
+    def __post_init__(self) -> None:
+        for name in ("position", "heading"):
+            value = getattr(self, name)
+            if not (np.isfinite(value) and value >= 0):
+                raise ValueError(f"{name} of a scatter is a number from 0 on, not {value!r}")
+
 
 @dataclass(frozen=True)
 class Task:
