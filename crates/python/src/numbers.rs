@@ -5,11 +5,11 @@ use pyo3::prelude::*;
 use vocabulary::Picture;
 
 /// Numbers row by row as an array of so many columns.
-pub(crate) fn matrix<'py>(
-    py: Python<'py>,
+pub(crate) fn matrix(
+    py: Python<'_>,
     numbers: Vec<f64>,
     columns: usize,
-) -> PyResult<Bound<'py, PyArray2<f64>>> {
+) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let rows = numbers.len().checked_div(columns).unwrap_or(0);
     PyArray1::from_vec(py, numbers).reshape([rows, columns])
 }

@@ -73,7 +73,9 @@ impl PyRun {
             let mut table = TableBuilder::new(kind);
             let mut batches = vec![];
             for part in self.records.chunks(SAMPLES_PER_BATCH) {
-                part.iter().for_each(|record| table.push(&self.fleet, record));
+                for record in part {
+                    table.push(&self.fleet, record);
+                }
                 batches.push(table.take()?);
             }
             let first = if batches.is_empty() { table.take()? } else { batches.remove(0) };
@@ -221,7 +223,7 @@ impl PyRun {
     #[pyo3(signature = (folder, *, csv=false, log=true, force=false))]
     fn save(&self, py: Python<'_>, folder: PathBuf, csv: bool, log: bool, force: bool) -> PyResult<()> {
         let total = self.moments().len() as u64;
-        let written = detached(py, None, total, |watch| {
+        let written = detached(py, None, total, move |watch| {
             let options = RunOptions { csv, no_log: !log, force, ..run_options(&self.scene) };
             let mut recorder = Recorder::create(&folder, &self.fleet, options)?;
             for (index, record) in self.moments().iter().enumerate() {

@@ -87,6 +87,9 @@ impl PyScene {
     }
 }
 
+/// What makes a scene again: a function and its arguments.
+type Pickled<'py> = (Bound<'py, PyAny>, (String, PathBuf, Vec<String>));
+
 #[pymethods]
 impl PyScene {
     /// Reads and checks a scene.
@@ -120,14 +123,11 @@ impl PyScene {
 
     #[staticmethod]
     fn _restore(text: String, path: PathBuf, sets: Vec<String>) -> PyResult<Self> {
-        let sets = sets.iter().map(|set| set.parse()).collect::<Result<_, _>>();
+        let sets = sets.into_iter().map(|set| set.parse()).collect::<Result<_, _>>();
         Self::parse_with(text, path, sets.map_err(of_scene::<scene::OverrideError>)?)
     }
 
-    fn __reduce__<'py>(
-        &self,
-        py: Python<'py>,
-    ) -> PyResult<(Bound<'py, PyAny>, (String, PathBuf, Vec<String>))> {
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Pickled<'py>> {
         let restore = py.get_type::<Self>().getattr("_restore")?;
         let sets = self.sets.iter().map(ToString::to_string).collect();
         Ok((restore, (self.text.clone(), self.path.clone(), sets)))
@@ -282,10 +282,10 @@ impl PyScene {
         let run = self.begin(py, law)?;
         let draw = DrawJob::of(&self.path, &run, adapter, picture);
         let notes = Mutex::default();
-        let progress = self.progress(py, progress)?;
-        let captured = detached(py, progress, at.len().max(1) as u64, |watch| {
+        let (told, progress) = (&notes, self.progress(py, progress)?);
+        let captured = detached(py, progress, at.len().max(1) as u64, move |watch| {
             let job = CaptureJob { draw, out: &folder, at: &at, of: &self.path };
-            footage::capture(&job, &Viewer::new(watch, &notes), |gpu| source(run, gpu))
+            footage::capture(&job, &Viewer::new(watch, told), |gpu| source(run, gpu))
         })?;
         warn(py, notes)?;
         captured.map(|captured| captured.files).map_err(|error| of_footage(&error))
@@ -316,7 +316,7 @@ impl PyScene {
         path, *, view=None, size=None, fps=None, preset=None, fresh=false, ffmpeg=false, without=None, overlay=false,
         inset_camera=None, law=None, adapter="auto", progress=None
     ))]
-    #[expect(clippy::too_many_arguments, clippy::fn_params_excessive_bools, reason = "keyword arguments")]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn film<'py>(
         &self,
         py: Python<'py>,

@@ -87,7 +87,7 @@ fn documented(stubs: &str, docs: &mut Docs) -> String {
         text.push('\n');
         let name = |start: &str| body.strip_prefix(start)?.split(['(', ':']).next().map(str::to_owned);
         if let Some(name) = name("class ") {
-            class = name.clone();
+            class.clone_from(&name);
             pending = Some((name, indent));
         } else if let Some(name) = name("def ") {
             let name = if indent == 0 { name } else { format!("{class}.{name}") };
@@ -103,7 +103,7 @@ fn documented(stubs: &str, docs: &mut Docs) -> String {
             let shown = shown.collect::<Vec<_>>().join("\n");
             let shown = shown.trim_start();
             let end = if lines.len() > 1 { format!("\n{pad}") } else { String::new() };
-            text.push_str(&format!("{pad}\"\"\"{shown}{end}\"\"\"\n"));
+            text.extend([&pad, "\"\"\"", shown, &end, "\"\"\"\n"]);
         }
     }
     text

@@ -12,7 +12,7 @@ struct Integrating {
 }
 
 impl BatchLaw for Integrating {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "integrating"
     }
 

@@ -253,7 +253,7 @@ struct Following {
 }
 
 impl BatchLaw for Following {
-    fn name(&self) -> &str {
+    fn name(&self) -> &'static str {
         "following"
     }
 
