@@ -1,5 +1,7 @@
 """Environments: what the libraries ask of them, the same on any number of copies and threads, and bad input."""
 
+import importlib.util
+import pathlib
 import warnings
 
 import echelon
@@ -371,3 +373,16 @@ class TestVideo:
         for _ in range(5):
             again.step(np.tile([1.0, 0.3], 6))
         assert again.digest == digest
+
+
+def test_the_example_trains_a_chain():
+    path = pathlib.Path(__file__).parents[2] / "crates" / "python" / "examples" / "train_chain.py"
+    spec = importlib.util.spec_from_file_location("train_chain", path)
+    example = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(example)
+    scene, task = example.chain().set({"time.duration": 5}), Task(scatter=Scatter(0.3, 0.3), end_on_contact=False)
+    trained = example.train(scene, task, 3, np.random.default_rng(0), tell=lambda text: None)
+    tests = FormationVectorEnv(scene, task, 16)
+    unseen = [example.UNSEEN + test for test in range(16)]
+    before, after = (example.returns(tests, scene, gains, unseen) for gains in (example.PAPER, trained))
+    assert (after > before).mean() > 0.9, (before.mean(), after.mean())

@@ -1,6 +1,6 @@
 //! All edges of a formation together: from what every follower sees to what every robot shall do.
 
-use crate::action::Action;
+use crate::agent_action::AgentAction;
 use crate::column::{cartesian, column};
 use crate::custom::{Custom, CustomState};
 use crate::decision::{Decision, without_leader};
@@ -49,7 +49,7 @@ pub struct FormationState {
     /// Per robot: what a law for many followers asked for last; `None` where none did.
     batch: Vec<Option<Command>>,
     /// Per robot: what somebody outside decides for it at the next decision.
-    actions: Vec<Option<Action>>,
+    actions: Vec<Option<AgentAction>>,
     /// Whether [`Formation::prepare`] has carried memories on to the sample that is decided next.
     prepared: bool,
     /// Per robot: what it is told; for a lead robot its prescribed motion.
@@ -620,7 +620,7 @@ const DIVIDES_BY: f64 = 0.01;
 
 impl FormationState {
     /// Somebody outside decides for a robot at the next decision; a robot that has no law then ignores it.
-    pub fn set_action(&mut self, robot: usize, action: Action) {
+    pub fn set_action(&mut self, robot: usize, action: AgentAction) {
         self.actions[robot] = Some(action);
     }
 

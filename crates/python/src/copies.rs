@@ -1,8 +1,8 @@
 //! Many copies of a scene side by side, driven by actions: what the environments in `python/echelon/envs` are made of.
 
-use crate::drawing::Drawing;
 use crate::error::{ActionError, EchelonError, RunError, busy, of_scene};
 use crate::numbers::{cube, pixels};
+use crate::picture_cache::PictureCache;
 use crate::pictures::{Viewer, of_footage, warn};
 use crate::scene::PyScene;
 use crate::watch::detached;
@@ -17,8 +17,8 @@ use rendering::{PictureSpec, Trail};
 use scene::Scene;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use studies::copies::{
-    ACTION, Agent, Column, Copies, CopyConfig, CopyError, Episode, Outcome, Progress, RecordSink, SIGNALS,
-    Scatter,
+    ACTION, Agent, Copies, CopyConfig, CopyError, CopySink, CopyStatus, Episode, ObservationColumn, Outcome,
+    SIGNALS, StartScatter,
 };
 use vocabulary::{Command, FleetInfo, StepRecord};
 
@@ -30,23 +30,23 @@ pub(crate) struct PyCopies {
     agents: usize,
     columns: usize,
     adapter: String,
-    copies: Mutex<Copies<Kept>>,
-    drawing: Mutex<Drawing>,
+    copies: Mutex<Copies<CopyMemory>>,
+    drawing: Mutex<PictureCache>,
 }
 
 /// What is kept of an episode. In a box: it moves with its copy.
-struct Kept {
+struct CopyMemory {
     digest: Box<Digest>,
-    drawn: Option<Box<Drawn>>,
+    drawn: Option<Box<DrawnPast>>,
 }
 
 /// What pictures need.
-struct Drawn {
+struct DrawnPast {
     fleet: FleetInfo,
     trail: Trail,
 }
 
-impl RecordSink for Kept {
+impl CopySink for CopyMemory {
     fn take(&mut self, record: &StepRecord) {
         self.digest.push(record);
         if let Some(drawn) = &mut self.drawn {
@@ -62,7 +62,7 @@ type Arrays<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray3<f64>>, Bound<
 struct Rows {
     observations: Vec<f64>,
     signals: Vec<f64>,
-    progress: Vec<Progress>,
+    progress: Vec<CopyStatus>,
 }
 
 fn of_copies(error: &CopyError) -> PyErr {
@@ -99,17 +99,17 @@ fn agents_called(scene: &Scene, names: &[String], scale: &[[f64; 2]]) -> PyResul
 }
 
 /// A column by name, scale and bound.
-fn column((name, scale, limit): &(String, f64, f64)) -> PyResult<Column> {
+fn column((name, scale, limit): &(String, f64, f64)) -> PyResult<ObservationColumn> {
     if !(*scale > 0.0 && *limit > 0.0) {
         return Err(wrong(&format!("the scale and the bound of `{name}` are positive numbers")));
     }
-    let column: Column = name.parse().map_err(|text: String| wrong(&text))?;
+    let column: ObservationColumn = name.parse().map_err(|text: String| wrong(&text))?;
     Ok(column.scaled(*scale, *limit))
 }
 
 impl PyCopies {
     /// The copies, unless another thread has them.
-    fn copies(&self) -> PyResult<MutexGuard<'_, Copies<Kept>>> {
+    fn copies(&self) -> PyResult<MutexGuard<'_, Copies<CopyMemory>>> {
         match self.copies.try_lock() {
             Ok(copies) => Ok(copies),
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
@@ -122,7 +122,7 @@ impl PyCopies {
         Rows {
             observations: vec![0.0; agents * self.columns],
             signals: vec![0.0; agents * SIGNALS.len()],
-            progress: vec![Progress::Blank; self.count],
+            progress: vec![CopyStatus::Blank; self.count],
         }
     }
 
@@ -139,7 +139,7 @@ impl PyCopies {
     fn with_rows<'py>(
         &self,
         py: Python<'py>,
-        work: impl FnOnce(&mut Copies<Kept>, Outcome<'_>) -> Result<(), CopyError> + Send,
+        work: impl FnOnce(&mut Copies<CopyMemory>, Outcome<'_>) -> Result<(), CopyError> + Send,
     ) -> PyResult<Arrays<'py>> {
         let mut guard = self.copies()?;
         let copies = &mut *guard;
@@ -215,14 +215,14 @@ impl PyCopies {
             columns: columns.iter().map(column).collect::<PyResult<_>>()?,
             residual,
             samples,
-            scatter: Scatter { robots: robots_called(&scene, &names)?, position, heading },
+            scatter: StartScatter { robots: robots_called(&scene, &names)?, position, heading },
             caption: Some(if residual { "law and actions" } else { "actions" }.to_owned()),
         };
         let pool = threads.map(|threads| ThreadPoolBuilder::new().num_threads(threads).build());
         let pool = pool.transpose().map_err(|error| wrong(&error.to_string()))?;
-        let sink = move |fleet: &FleetInfo| Kept {
+        let sink = move |fleet: &FleetInfo| CopyMemory {
             digest: Box::default(),
-            drawn: drawn.then(|| Box::new(Drawn { fleet: fleet.clone(), trail: Trail::new(fleet) })),
+            drawn: drawn.then(|| Box::new(DrawnPast { fleet: fleet.clone(), trail: Trail::new(fleet) })),
         };
         Ok(Self {
             count,

@@ -5,10 +5,10 @@
 
 mod cameras;
 mod copies;
-mod drawing;
 mod error;
 mod law;
 mod numbers;
+mod picture_cache;
 mod pictures;
 mod run;
 mod scene;

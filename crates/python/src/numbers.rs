@@ -21,10 +21,10 @@ pub(crate) fn pixels<'py>(py: Python<'py>, picture: &Picture) -> PyResult<Bound<
 }
 
 /// Numbers row by row as an array of three axes.
-pub(crate) fn cube<'py>(
-    py: Python<'py>,
+pub(crate) fn cube(
+    py: Python<'_>,
     numbers: Vec<f64>,
     shape: [usize; 3],
-) -> PyResult<Bound<'py, PyArray3<f64>>> {
+) -> PyResult<Bound<'_, PyArray3<f64>>> {
     PyArray1::from_vec(py, numbers).reshape(shape)
 }

@@ -1,9 +1,9 @@
 //! A simulation step by step: its state as arrays, changes on the way, copies.
 
-use crate::drawing::Drawing;
 use crate::error::{EndOfRunError, RunError, busy};
 use crate::law::raised;
 use crate::numbers::{matrix, pixels};
+use crate::picture_cache::PictureCache;
 use crate::pictures::{Viewer, looks, of_footage, warn};
 use crate::scene::PyScene;
 use crate::values::overrides;
@@ -40,7 +40,7 @@ struct Driven {
     trail: Trail,
     /// The record before the last, between which pictures are drawn.
     before: StepRecord,
-    drawing: Drawing,
+    drawing: PictureCache,
 }
 
 impl Driven {
@@ -81,7 +81,7 @@ impl PySimulation {
             trail: Trail::new(&fleet),
             before: simulation.record().clone(),
             simulation,
-            drawing: Drawing::default(),
+            drawing: PictureCache::default(),
         };
         let period = driven.simulation.period();
         // So that there is a state to look at.
@@ -214,7 +214,7 @@ impl PySimulation {
             digest: driven.digest.clone(),
             trail: driven.trail.clone(),
             before: driven.before.clone(),
-            drawing: Drawing::default(),
+            drawing: PictureCache::default(),
         };
         drop(driven);
         match raised() {

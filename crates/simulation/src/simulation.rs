@@ -10,7 +10,7 @@ use crate::safety::SafetyPipeline;
 use crate::sensing::SensingPipeline;
 use crate::setup::Setup;
 use crate::step::{act, sense, step};
-use formation::{Action, Decision, EdgeLaw, Estimate, Formation, FormationState};
+use formation::{AgentAction, Decision, EdgeLaw, Estimate, Formation, FormationState};
 use laws::{BatchLaw, Input};
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -126,7 +126,7 @@ impl Simulation {
 
     /// The second half of a step: `actions` decide for the robots that they name, laws for the others. False when the run is
     /// over.
-    pub fn act(&mut self, actions: impl IntoIterator<Item = (usize, Action)>) -> bool {
+    pub fn act(&mut self, actions: impl IntoIterator<Item = (usize, AgentAction)>) -> bool {
         if !sense(self) {
             return false;
         }

@@ -4,14 +4,14 @@
 //! have not decided on. What becomes of a copy depends on its own episode and actions alone, so it is the same for any number
 //! of copies and threads.
 
-mod column;
+mod observation_column;
 mod scatter;
 
-pub use column::Column;
-pub use scatter::{Episode, Scatter};
+pub use observation_column::ObservationColumn;
+pub use scatter::{Episode, StartScatter};
 
 use crate::Error;
-use formation::Action;
+use formation::AgentAction;
 use laws::INPUTS;
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -26,13 +26,13 @@ pub struct CopyConfig {
     /// Those who are driven from outside.
     pub agents: Vec<Agent>,
     /// What each of them observes.
-    pub columns: Vec<Column>,
+    pub columns: Vec<ObservationColumn>,
     /// Whether actions are added to what laws ask for; else they take the place of the laws.
     pub residual: bool,
     /// Control samples for which an action holds, 1 or more.
     pub samples: u64,
     /// Where robots start.
-    pub scatter: Scatter,
+    pub scatter: StartScatter,
     /// What pictures say of the laws.
     pub caption: Option<String>,
 }
@@ -66,7 +66,7 @@ pub const ACTION: usize = 2;
 
 /// How a copy goes on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Progress {
+pub enum CopyStatus {
     /// It has no episode yet.
     #[default]
     Blank,
@@ -79,7 +79,7 @@ pub enum Progress {
 }
 
 /// Takes the records of a copy.
-pub trait RecordSink: Send {
+pub trait CopySink: Send {
     /// The next record.
     fn take(&mut self, record: &StepRecord);
 }
@@ -91,7 +91,7 @@ pub struct Outcome<'a> {
     /// Copies × agents × [`SIGNALS`].
     pub signals: &'a mut [f64],
     /// Per copy.
-    pub progress: &'a mut [Progress],
+    pub progress: &'a mut [CopyStatus],
 }
 
 /// Why copies did not go on.
@@ -131,22 +131,22 @@ pub enum CopyError {
 struct Copied<S> {
     simulation: Simulation,
     sink: S,
-    actions: Vec<(usize, Action)>,
+    actions: Vec<(usize, AgentAction)>,
     /// Per agent: whether it touched something since the last action.
     touches: Vec<bool>,
 }
 
 /// A copy's place among the others.
-struct Slot<S> {
+struct CopySlot<S> {
     copied: Option<Copied<S>>,
-    progress: Progress,
+    progress: CopyStatus,
 }
 
 /// Copies of a scene.
 pub struct Copies<S> {
     scene: Scene,
     config: CopyConfig,
-    slots: Vec<Slot<S>>,
+    slots: Vec<CopySlot<S>>,
     /// Makes what takes the records of an episode.
     sink: Box<dyn Fn(&FleetInfo) -> S + Send + Sync>,
     pool: Option<ThreadPool>,
@@ -157,7 +157,7 @@ const SHARED_FROM: usize = 16;
 /// Copies that a thread takes at a time.
 const SHARE: usize = 8;
 
-impl<S: RecordSink> Copies<S> {
+impl<S: CopySink> Copies<S> {
     /// So many copies of `scene`, none of which has an episode yet. `pool` shares the work, or rayon's own where there is none.
     pub fn new(
         scene: Scene,
@@ -166,7 +166,7 @@ impl<S: RecordSink> Copies<S> {
         pool: Option<ThreadPool>,
         sink: impl Fn(&FleetInfo) -> S + Send + Sync + 'static,
     ) -> Self {
-        let slots = (0..count).map(|_| Slot { copied: None, progress: Progress::Blank }).collect();
+        let slots = (0..count).map(|_| CopySlot { copied: None, progress: CopyStatus::Blank }).collect();
         Self { scene, config, slots, sink: Box::new(sink), pool }
     }
 
@@ -208,10 +208,10 @@ impl<S: RecordSink> Copies<S> {
         let begun = slots.iter_mut().zip(episodes).enumerate();
         let begun = begun.filter_map(|(copy, (slot, episode))| Some((copy, slot, (*episode)?)));
         share(pool.as_ref(), begun.collect(), |(copy, slot, episode)| {
-            slot.progress = Progress::Blank;
+            slot.progress = CopyStatus::Blank;
             let copied = Copied::begin(scene.clone(), config, episode, sink);
             slot.copied = Some(copied.map_err(|error| CopyError::Broken { copy, error })?);
-            slot.progress = Progress::Running;
+            slot.progress = CopyStatus::Running;
             Ok(())
         })
     }
@@ -270,7 +270,7 @@ impl<S: RecordSink> Copies<S> {
     fn each(
         &mut self,
         outcome: Outcome<'_>,
-        work: impl Fn(&CopyConfig, usize, &mut Slot<S>) -> Result<(), CopyError> + Send + Sync,
+        work: impl Fn(&CopyConfig, usize, &mut CopySlot<S>) -> Result<(), CopyError> + Send + Sync,
     ) -> Result<(), CopyError> {
         let Self { config, slots, pool, .. } = self;
         let Outcome { observations, signals, progress } = outcome;
@@ -278,7 +278,7 @@ impl<S: RecordSink> Copies<S> {
         let [wide, told] = [config.columns.len(), SIGNALS.len()].map(|columns| (columns * agents).max(1));
         let rows = slots.iter_mut().zip(observations.chunks_mut(wide)).zip(signals.chunks_mut(told));
         let rows = rows.zip(progress).enumerate();
-        let rows = rows.map(|(copy, (((slot, seen), signals), progress))| Row {
+        let rows = rows.map(|(copy, (((slot, seen), signals), progress))| CopyRow {
             copy,
             slot,
             seen,
@@ -294,12 +294,12 @@ impl<S: RecordSink> Copies<S> {
 }
 
 /// A copy, and where what it comes to is written.
-struct Row<'a, S> {
+struct CopyRow<'a, S> {
     copy: usize,
-    slot: &'a mut Slot<S>,
+    slot: &'a mut CopySlot<S>,
     seen: &'a mut [f64],
     signals: &'a mut [f64],
-    progress: &'a mut Progress,
+    progress: &'a mut CopyStatus,
 }
 
 /// Does `work` with each of `items`, on the threads of `pool` or rayon's own where there are many.
@@ -347,15 +347,15 @@ impl CopyFault {
     }
 }
 
-impl<S: RecordSink> Slot<S> {
+impl<S: CopySink> CopySlot<S> {
     fn step(&mut self, config: &CopyConfig, actions: &[f64]) -> Result<(), CopyFault> {
         let why = match (self.progress, &mut self.copied) {
-            (Progress::Running, Some(copied)) => {
+            (CopyStatus::Running, Some(copied)) => {
                 self.progress = copied.step(config, actions).map_err(CopyFault::Broken)?;
                 return Ok(());
             }
-            (Progress::TimeUp, _) => "has come to its end",
-            (Progress::Stopped, _) => "has stopped at a contact",
+            (CopyStatus::TimeUp, _) => "has come to its end",
+            (CopyStatus::Stopped, _) => "has stopped at a contact",
             _ => "has not begun",
         };
         Err(CopyFault::NotRunning(why))
@@ -377,7 +377,7 @@ impl<S: RecordSink> Slot<S> {
     }
 }
 
-impl<S: RecordSink> Copied<S> {
+impl<S: CopySink> Copied<S> {
     fn begin(
         mut scene: Scene,
         config: &CopyConfig,
@@ -397,7 +397,7 @@ impl<S: RecordSink> Copied<S> {
         Ok(Self { simulation, sink, actions: vec![], touches })
     }
 
-    fn step(&mut self, config: &CopyConfig, actions: &[f64]) -> Result<Progress, Error> {
+    fn step(&mut self, config: &CopyConfig, actions: &[f64]) -> Result<CopyStatus, Error> {
         let Self { simulation, sink, touches, .. } = self;
         touches.fill(false);
         self.actions.clear();
@@ -407,7 +407,8 @@ impl<S: RecordSink> Copied<S> {
                 acceleration: acceleration * agent.scale.acceleration,
                 turn_rate: turn_rate * agent.scale.turn_rate,
             };
-            let action = if config.residual { Action::Added(command) } else { Action::Instead(command) };
+            let action =
+                if config.residual { AgentAction::Added(command) } else { AgentAction::Instead(command) };
             (agent.robot, action)
         }));
         for _ in 0..config.samples {
@@ -417,7 +418,7 @@ impl<S: RecordSink> Copied<S> {
             sink.take(simulation.record());
             if !simulation.sense() {
                 let stopped = simulation.fault().is_none();
-                return if stopped { Ok(Progress::Stopped) } else { Err(broken(simulation)) };
+                return if stopped { Ok(CopyStatus::Stopped) } else { Err(broken(simulation)) };
             }
             let contacts = simulation.contacts();
             if !contacts.is_empty() {
@@ -426,10 +427,10 @@ impl<S: RecordSink> Copied<S> {
                 }
             }
             if simulation.sample() + 1 >= simulation.len() {
-                return Ok(Progress::TimeUp);
+                return Ok(CopyStatus::TimeUp);
             }
         }
-        Ok(Progress::Running)
+        Ok(CopyStatus::Running)
     }
 
     fn signals(&self, agent: &Agent, [distance, bearing]: [f64; 2], touches: bool, out: &mut [f64]) {

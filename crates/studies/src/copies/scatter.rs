@@ -8,7 +8,7 @@ use vocabulary::{Pose, math};
 
 /// How far robots start from where their scene puts them.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Scatter {
+pub struct StartScatter {
     /// Numbers of the robots; the others start where the scene puts them.
     pub robots: Vec<usize>,
     /// Radius of the disc in which the start is, uniformly distributed, m.
@@ -34,7 +34,7 @@ const DRAWN: u64 = 3;
 /// ratio).
 const STRIDE: u64 = 0x9e37_79b9_7f4a_7c15;
 
-impl Scatter {
+impl StartScatter {
     /// Gives `scene` the starts and the seed of an episode. Starts whose bodies could touch are drawn again.
     ///
     /// # Errors

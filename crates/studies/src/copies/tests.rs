@@ -1,10 +1,12 @@
+//! What becomes of copies is what becomes of runs.
+
 use super::*;
 use metrics::Digest;
 
 #[derive(Default)]
-struct Kept(Digest);
+struct DigestSink(Digest);
 
-impl RecordSink for Kept {
+impl CopySink for DigestSink {
     fn take(&mut self, record: &StepRecord) {
         self.0.push(record);
     }
@@ -24,20 +26,20 @@ fn config(scene: &Scene, residual: bool, scatter: f64) -> CopyConfig {
         columns: vec!["error.distance".parse().expect("a column"), "own.speed".parse().expect("a column")],
         residual,
         samples: 1,
-        scatter: Scatter { robots: robots.to_vec(), position: scatter, heading: 0.0 },
+        scatter: StartScatter { robots: robots.to_vec(), position: scatter, heading: 0.0 },
         caption: None,
     }
 }
 
 /// Drives `count` copies by the same actions; their digests, and the last observations of the first.
 fn drive(config: &CopyConfig, count: usize, steps: usize, action: f64) -> (Vec<String>, Vec<f64>) {
-    let mut copies = Copies::new(scene(), config.clone(), count, None, |_| Kept::default());
+    let mut copies = Copies::new(scene(), config.clone(), count, None, |_| DigestSink::default());
     let episode = |copy: usize| Some(Episode { seed: copy as u64, number: 0 });
     copies.reset(&(0..count).map(episode).collect::<Vec<_>>()).expect("starts");
     let (agents, columns) = (config.agents.len(), config.columns.len());
     let mut observations = vec![0.0; count * agents * columns];
     let mut signals = vec![0.0; count * agents * SIGNALS.len()];
-    let mut progress = vec![Progress::Blank; count];
+    let mut progress = vec![CopyStatus::Blank; count];
     for _ in 0..steps {
         let outcome =
             Outcome { observations: &mut observations, signals: &mut signals, progress: &mut progress };

@@ -23,7 +23,7 @@ enum Function {
 
 /// One number of what an agent observes: what its law is told, scaled and within bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Column {
+pub struct ObservationColumn {
     source: Source,
     function: Function,
     /// What becomes 1.
@@ -47,7 +47,7 @@ const fn error(wanted: InputKind, told: InputKind) -> Source {
     Source::Error { wanted, told, angle: false }
 }
 
-impl Column {
+impl ObservationColumn {
     /// The names of all columns but those within `sin(…)` and `cos(…)`.
     pub fn names() -> impl Iterator<Item = &'static str> {
         INPUTS.iter().map(|(_, name, ..)| *name).chain(ERRORS.iter().map(|(name, _)| *name))
@@ -77,7 +77,7 @@ impl Column {
     }
 }
 
-impl FromStr for Column {
+impl FromStr for ObservationColumn {
     type Err = String;
 
     /// By name, such as `error.distance` or `sin(leader.view_angle)`; not scaled, without bounds.
@@ -122,12 +122,16 @@ mod tests {
             noise: Noise::default(),
         };
         let value = |name: &str, scale: f64, limit: f64| {
-            name.parse::<Column>().expect("a column").scaled(scale, limit).value(&input)
+            name.parse::<ObservationColumn>().expect("a column").scaled(scale, limit).value(&input)
         };
         assert_eq!(value("error.distance", 0.5, 10.0), -4.0);
         assert_eq!(value("error.distance", 0.5, 3.0), -3.0);
         assert!((value("error.bearing", 1.0, 10.0) - (6.0 - std::f64::consts::TAU)).abs() < 1e-12);
         assert_eq!(value("sin(leader.view_angle)", 1.0, 1.0), math::sin(0.5));
-        assert!("leader.distnce".parse::<Column>().is_err_and(|text| text.contains("leader.distance,")));
+        assert!(
+            "leader.distnce"
+                .parse::<ObservationColumn>()
+                .is_err_and(|text| text.contains("leader.distance,"))
+        );
     }
 }

@@ -8,7 +8,7 @@ use vocabulary::FleetInfo;
 
 /// What has drawn pictures of a simulation.
 #[derive(Default)]
-pub(crate) struct Drawing {
+pub(crate) struct PictureCache {
     gpu: Option<Gpu>,
     /// The last of them, each with what it draws.
     setups: VecDeque<(PictureOptions, RenderSetup)>,
@@ -17,7 +17,7 @@ pub(crate) struct Drawing {
 /// Views of a step that are drawn in turn without being set up anew.
 const SETUPS: usize = 8;
 
-impl Drawing {
+impl PictureCache {
     /// What draws pictures with these options.
     pub(crate) fn setup(
         &mut self,
