@@ -98,13 +98,13 @@ fn agents_called(scene: &Scene, names: &[String], scale: &[[f64; 2]]) -> PyResul
     robots.into_iter().zip(names).zip(scale).map(agent).collect()
 }
 
-/// A column by name, scale and bound.
-fn column((name, scale, limit): &(String, f64, f64)) -> PyResult<ObservationColumn> {
-    if !(*scale > 0.0 && *limit > 0.0) {
+/// The column of that name, where `scale` becomes 1 and nothing is beyond `limit`.
+fn column(name: &str, scale: f64, limit: f64) -> PyResult<ObservationColumn> {
+    if !(scale > 0.0 && limit > 0.0) {
         return Err(wrong(&format!("the scale and the bound of `{name}` are positive numbers")));
     }
     let column: ObservationColumn = name.parse().map_err(|text: String| wrong(&text))?;
-    Ok(column.scaled(*scale, *limit))
+    Ok(column.scaled(scale, limit))
 }
 
 impl PyCopies {
@@ -176,8 +176,10 @@ impl PyCopies {
     ///     Adds actions to what the scene's laws ask for.
     /// samples : int, optional
     ///     Control samples for which an action holds.
-    /// scatter : (list of str, float, float), optional
-    ///     Robots that start elsewhere in every episode, within how many m and rad.
+    /// scattered : list of str, optional
+    ///     Robots that start elsewhere in every episode.
+    /// scatter : (float, float), optional
+    ///     Within how many m and rad.
     /// drawn : bool, optional
     ///     Keeps what pictures show of the past.
     /// threads : int, optional
@@ -186,7 +188,7 @@ impl PyCopies {
     ///     Graphics adapter for `render`.
     #[new]
     #[pyo3(signature = (
-        scene, count, *, agents, columns, scale, residual=false, samples=1, scatter=(vec![], 0.0, 0.0), drawn=false,
+        scene, count, *, agents, columns, scale, residual=false, samples=1, scattered=vec![], scatter=[0.0, 0.0], drawn=false,
         threads=None, adapter="auto"
     ))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
@@ -198,7 +200,8 @@ impl PyCopies {
         scale: Vec<[f64; 2]>,
         residual: bool,
         samples: u64,
-        scatter: (Vec<String>, f64, f64),
+        scattered: Vec<String>,
+        scatter: [f64; 2],
         drawn: bool,
         threads: Option<usize>,
         adapter: &str,
@@ -209,13 +212,14 @@ impl PyCopies {
                 "copies need one copy, agent and sample at least, and a scale for every agent",
             ));
         }
-        let (names, position, heading) = scatter;
+        let [position, heading] = scatter;
+        let one = |(name, scale, limit): &(String, f64, f64)| column(name, *scale, *limit);
         let config = CopyConfig {
             agents: agents_called(&scene, &agents, &scale)?,
-            columns: columns.iter().map(column).collect::<PyResult<_>>()?,
+            columns: columns.iter().map(one).collect::<PyResult<_>>()?,
             residual,
             samples,
-            scatter: StartScatter { robots: robots_called(&scene, &names)?, position, heading },
+            scatter: StartScatter { robots: robots_called(&scene, &scattered)?, position, heading },
             caption: Some(if residual { "law and actions" } else { "actions" }.to_owned()),
         };
         let pool = threads.map(|threads| ThreadPoolBuilder::new().num_threads(threads).build());

@@ -431,6 +431,7 @@ class Simulation:
             whose follower follows nobody are NaN.
         """
 
+@final
 class Copies:
     """Many copies of a scene, whose followers are driven by actions. `echelon.envs` has environments for learning on top of it."""
     def __new__(
@@ -443,7 +444,8 @@ class Copies:
         scale: Sequence[tuple[float, float]],
         residual: bool = False,
         samples: int = 1,
-        scatter: tuple[Sequence[str], float, float] = ...,
+        scattered: Sequence[str] = ...,
+        scatter: Sequence[float] = ...,
         drawn: bool = False,
         threads: int | None = None,
         adapter: str = "auto",
@@ -467,8 +469,10 @@ class Copies:
             Adds actions to what the scene's laws ask for.
         samples : int, optional
             Control samples for which an action holds.
-        scatter : (list of str, float, float), optional
-            Robots that start elsewhere in every episode, within how many m and rad.
+        scattered : list of str, optional
+            Robots that start elsewhere in every episode.
+        scatter : (float, float), optional
+            Within how many m and rad.
         drawn : bool, optional
             Keeps what pictures show of the past.
         threads : int, optional

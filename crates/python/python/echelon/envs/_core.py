@@ -64,16 +64,17 @@ class Core:
         columns = self.task.columns(everything)
         scale = [self.task.action_scale(robots[name]) for name in self.agents]
         scatter = self.task.scatter
-        scattered = ([], 0.0, 0.0)
+        scattered: list[str] = []
         if scatter is not None:
-            names = self.scene.followers if scatter.robots is None else scatter.robots
-            scattered = (list(names), float(scatter.position), float(scatter.heading))
+            scattered = list(self.scene.followers if scatter.robots is None else scatter.robots)
         self.count = copies
         self.scale = np.array(scale)
         self.interval = self.scene.period * self.task.samples
         self.copies = Copies(
             self.scene, copies, agents=self.agents, columns=columns, scale=scale, residual=self.task.residual,
-            samples=self.task.samples, scatter=scattered, drawn=render_mode is not None, threads=threads, adapter=adapter)
+            samples=self.task.samples, scattered=scattered,
+            scatter=(scatter.position, scatter.heading) if scatter else (0.0, 0.0),
+            drawn=render_mode is not None, threads=threads, adapter=adapter)
         self._view, self._size = view, None if size is None else tuple(size)
         self._render_mode = render_mode
         self._seeds: list[int | None] = [None] * copies
