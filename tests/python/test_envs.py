@@ -386,3 +386,11 @@ def test_the_example_trains_a_chain():
     unseen = [example.UNSEEN + test for test in range(16)]
     before, after = (example.returns(tests, scene, gains, unseen) for gains in (example.PAPER, trained))
     assert (after > before).mean() > 0.9, (before.mean(), after.mean())
+
+
+def test_everything_public_is_documented():
+    for name in echelon.envs.__all__:
+        thing = getattr(echelon.envs, name)
+        if callable(thing):
+            own = {"": thing} | {k: v for k, v in vars(thing).items() if callable(v) and not k.startswith("_")}
+            assert all(member.__doc__ for member in own.values()), name

@@ -16,7 +16,7 @@ They need the extra ``echelon[envs]``.
 
 try:
     import gymnasium as _gymnasium
-    import pettingzoo as _pettingzoo  # noqa: F401
+    import pettingzoo as _pettingzoo  # type: ignore[import-untyped]  # noqa: F401
 except ImportError as error:
     raise ImportError('echelon.envs needs gymnasium and pettingzoo: pip install "echelon[envs]"') from error
 

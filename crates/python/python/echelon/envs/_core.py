@@ -96,9 +96,9 @@ class Core:
 
     def reset(self, mask: NDArray[np.bool_], seeds: Sequence[int | None], drawn: np.random.Generator) -> None:
         """Begins an episode in the copies of `mask`, with new seeds where there are some; `drawn` makes up those that miss."""
-        for copy in np.flatnonzero(mask):
-            if seeds[copy] is not None:
-                self._seeds[copy], self._numbers[copy] = int(seeds[copy]), 0
+        for copy in np.flatnonzero(mask).tolist():
+            if (seed := seeds[copy]) is not None:
+                self._seeds[copy], self._numbers[copy] = int(seed), 0
             elif self._seeds[copy] is None:
                 self._seeds[copy], self._numbers[copy] = int(drawn.integers(_SEEDS)), 0
             else:
@@ -143,7 +143,7 @@ class Core:
                               "rate of each") from None
 
     def _refuse(self, idle: NDArray[np.bool_]) -> None:
-        for copy in np.flatnonzero(~idle):
+        for copy in np.flatnonzero(~idle).tolist():
             progress = int(self.progress[copy])
             if progress != _RUNNING:
                 raise ResetNeeded(f"the episode of copy {copy} {_WHY[progress]}")

@@ -55,7 +55,15 @@ class Signals:
         Time between two actions, s.
     """
 
-    __slots__ = ("effort", "interval", *SIGNALS)
+    error_distance_m: NDArray[np.float64]
+    error_bearing_rad: NDArray[np.float64]
+    acceleration_m_s2: NDArray[np.float64]
+    turn_rate_rad_s: NDArray[np.float64]
+    speed_m_s: NDArray[np.float64]
+    x_m: NDArray[np.float64]
+    y_m: NDArray[np.float64]
+    heading_rad: NDArray[np.float64]
+    touches: NDArray[np.float64]
 
     def __init__(self, numbers: NDArray[np.float64], scale: NDArray[np.float64], interval: float) -> None:
         for column, name in enumerate(SIGNALS):

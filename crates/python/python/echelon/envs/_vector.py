@@ -128,7 +128,7 @@ class FormationVectorEnv(VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
         ended = self.core.ended.copy()
         infos["final_obs"], infos["_final_obs"] = np.full(self.num_envs, None, dtype=object), ended
         why = np.full(self.num_envs, None, dtype=object)
-        for copy in np.flatnonzero(ended):
+        for copy in np.flatnonzero(ended).tolist():
             infos["final_obs"][copy] = last[copy].copy()
             why[copy] = self.core.why(step, copy)
         infos["final_info"] = {"rewards": step.rewards.copy(), "_rewards": ended, "why": why, "_why": ended}

@@ -6,8 +6,8 @@ from typing import Any
 
 import gymnasium
 from gymnasium import spaces
-from pettingzoo import ParallelEnv
-from pettingzoo.utils import BaseParallelWrapper
+from pettingzoo import ParallelEnv  # type: ignore[import-untyped]
+from pettingzoo.utils import BaseParallelWrapper  # type: ignore[import-untyped]
 
 
 class _Together(gymnasium.Env[dict[str, Any], dict[str, Any]]):
