@@ -1,5 +1,6 @@
 //! All edges of a formation together: from what every follower sees to what every robot shall do.
 
+use crate::agent_action::AgentAction;
 use crate::column::{cartesian, column};
 use crate::custom::{Custom, CustomState};
 use crate::decision::{Decision, without_leader};
@@ -47,6 +48,10 @@ pub struct FormationState {
     pub customs: Vec<CustomState>,
     /// Per robot: what a law for many followers asked for last; `None` where none did.
     batch: Vec<Option<Command>>,
+    /// Per robot: what somebody outside decides for it at the next decision.
+    actions: Vec<Option<AgentAction>>,
+    /// Whether [`Formation::prepare`] has carried memories on to the sample that is decided next.
+    prepared: bool,
     /// Per robot: what it is told; for a lead robot its prescribed motion.
     pub commands: Vec<Command>,
     drives: Vec<MotionInput>,
@@ -176,6 +181,8 @@ impl Formation {
             memories: vec![EdgeMemory::default(); self.edges.len()],
             customs: vec![CustomState::default(); self.edges.len()],
             batch: vec![None; robots],
+            actions: vec![None; robots],
+            prepared: false,
             commands: vec![Command::default(); robots],
             drives: vec![MotionInput::default(); robots],
             turn_rates: [None, None],
@@ -229,8 +236,44 @@ impl Formation {
     }
 
     fn begin(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
-        self.remember(time, observations, state);
-        state.differentiate_turn_rates(self.period);
+        if !std::mem::take(&mut state.prepared) {
+            self.remember(time, observations, state);
+            state.differentiate_turn_rates(self.period);
+        }
+    }
+
+    /// Carries on to this sample what followers remember, so that [`Formation::told`] tells of it; the decision of the same
+    /// sample, which comes next, does not do it again.
+    pub fn prepare(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
+        self.begin(time, observations, state);
+        state.prepared = true;
+    }
+
+    /// Hands to `read` what the law of edge number `index` is told at a sample that is prepared, and the tracking error, [m, rad],
+    /// as the follower knows it. Of what leaders do within the sample nothing is known yet: their motion is that of the sample
+    /// before.
+    pub fn told<R>(
+        &self,
+        index: usize,
+        time: f64,
+        seen: &Observation,
+        state: &FormationState,
+        read: impl FnOnce(&Input<'_>, [f64; 2]) -> R,
+    ) -> R {
+        let view = self.view(index, time, seen, state);
+        let leaders = [view.leader_input(&self.edges[index].law)];
+        read(&self.input(index, time, view.own_speed, &leaders, state), view.error())
+    }
+
+    /// True tracking error of edge number `index` at a sample that is prepared, [m, rad]; `truth` is the true relative position.
+    pub fn true_error(
+        &self,
+        index: usize,
+        time: f64,
+        truth: &Observation,
+        state: &FormationState,
+    ) -> [f64; 2] {
+        self.view(index, time, truth, state).error()
     }
 
     /// Carries what followers remember of their leaders on to this sample.
@@ -378,10 +421,16 @@ impl Formation {
             &several
         };
         let (parameters, seen) = (&self.edges[first], &observations[first]);
-        let asked = match &parameters.custom {
-            _ if parameters.batch.is_some() => state.batch[self.edges()[first].follower],
+        let follower = self.edges()[first].follower;
+        let action = state.actions[follower].take();
+        let by_law = || match &parameters.custom {
+            _ if parameters.batch.is_some() => state.batch[follower],
             None => Some(parameters.law.command(&views[0].law_input())),
             Some(custom) => self.ask(custom, first, time, views, state, rates),
+        };
+        let asked = match action {
+            None => by_law(),
+            Some(action) => action.applied_to(by_law),
         };
         // A law that has broken off leaves its follower as if it had lost its leader.
         let mut asked = asked.unwrap_or_else(|| without_leader(true, seen.own_speed, limits));
@@ -570,6 +619,11 @@ impl Formation {
 const DIVIDES_BY: f64 = 0.01;
 
 impl FormationState {
+    /// Somebody outside decides for a robot at the next decision; a robot that has no law then ignores it.
+    pub fn set_action(&mut self, robot: usize, action: AgentAction) {
+        self.actions[robot] = Some(action);
+    }
+
     /// The follower of edge number `index` has another leader from now on, of whose relative position and motion it
     /// believes `estimate`.
     pub fn change_leader(&mut self, index: usize, law: &Law, estimate: Estimate, hand_over: HandOver) {

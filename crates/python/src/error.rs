@@ -10,6 +10,7 @@ import_exception!(echelon._errors, RunError);
 import_exception!(echelon._errors, RenderingError);
 import_exception!(echelon._errors, EndOfRunError);
 import_exception!(echelon._errors, BusyError);
+import_exception!(echelon._errors, ActionError);
 
 /// Everything that is wrong with a scene.
 pub(crate) fn of_diagnostics(faults: &Diagnostics) -> PyErr {

@@ -4,9 +4,11 @@
 //! `python/echelon`. The interpreter is released while the core works, and a [`watch::Watch`] looks after signals meanwhile.
 
 mod cameras;
+mod copies;
 mod error;
 mod law;
 mod numbers;
+mod picture_cache;
 mod pictures;
 mod run;
 mod scene;
@@ -20,6 +22,8 @@ use pyo3::pymodule;
 /// The extension behind the package `echelon`.
 #[pymodule]
 mod _echelon {
+    #[pymodule_export]
+    use crate::copies::PyCopies;
     #[pymodule_export]
     use crate::run::PyRun;
     #[pymodule_export]
@@ -36,6 +40,7 @@ mod _echelon {
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         module.add("ROBOT_COLUMNS", recording::robot_columns())?;
         module.add("EDGE_COLUMNS", recording::edge_columns())?;
+        module.add("SIGNALS", studies::copies::SIGNALS.to_vec())?;
         module.add("INPUTS", crate::law::inputs())
     }
 }

@@ -19,3 +19,12 @@ pub(crate) fn pixels<'py>(py: Python<'py>, picture: &Picture) -> PyResult<Bound<
     let rgb = picture.rgba.chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
     PyArray1::from_vec(py, rgb).reshape([picture.height as usize, picture.width as usize, 3])
 }
+
+/// Numbers row by row as an array of three axes.
+pub(crate) fn cube(
+    py: Python<'_>,
+    numbers: Vec<f64>,
+    shape: [usize; 3],
+) -> PyResult<Bound<'_, PyArray3<f64>>> {
+    PyArray1::from_vec(py, numbers).reshape(shape)
+}

@@ -3,20 +3,19 @@
 use crate::error::{EndOfRunError, RunError, busy};
 use crate::law::raised;
 use crate::numbers::{matrix, pixels};
+use crate::picture_cache::PictureCache;
 use crate::pictures::{Viewer, looks, of_footage, warn};
 use crate::scene::PyScene;
 use crate::values::overrides;
 use crate::watch::detached;
-use footage::{Audience, PictureOptions, RenderSetup};
 use metrics::Digest;
 use numpy::{PyArray2, PyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use recording::{edge_columns, edge_numbers, robot_columns, robot_numbers};
-use rendering::{AdapterChoice, Gpu, PictureSpec, Trail};
+use rendering::{PictureSpec, Trail};
 use scene::Scene;
 use simulation::{Simulation, build};
-use std::collections::VecDeque;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use studies::SceneRun;
 use vocabulary::{EntityId, FleetInfo, StepRecord};
@@ -41,48 +40,7 @@ struct Driven {
     trail: Trail,
     /// The record before the last, between which pictures are drawn.
     before: StepRecord,
-    drawing: Drawing,
-}
-
-/// What has drawn pictures of a simulation.
-#[derive(Default)]
-struct Drawing {
-    gpu: Option<Gpu>,
-    /// The last of them, each with what it draws.
-    setups: VecDeque<(PictureOptions, RenderSetup)>,
-}
-
-/// Views of a step that are drawn in turn without being set up anew.
-const SETUPS: usize = 8;
-
-impl Drawing {
-    /// What draws pictures with these options.
-    fn setup(
-        &mut self,
-        options: PictureOptions,
-        scene: &Scene,
-        fleet: &FleetInfo,
-        adapter: &str,
-        audience: &dyn Audience,
-    ) -> Result<&mut RenderSetup, footage::Error> {
-        if let Some(known) = self.setups.iter().position(|(known, _)| *known == options) {
-            let last = self.setups.remove(known);
-            self.setups.extend(last);
-        } else {
-            let open = || Gpu::open(&AdapterChoice::from(adapter)).map_err(footage::Error::from);
-            let known = self.gpu.clone();
-            let (view, size) = (&scene.views.default, scene.film.size);
-            let setup =
-                RenderSetup::on(|| known.map_or_else(open, Ok), &options, fleet, view, size, audience)?;
-            self.gpu = Some(setup.gpu.clone());
-            self.setups.push_back((options, setup));
-            if self.setups.len() > SETUPS {
-                self.setups.pop_front();
-            }
-        }
-        let last = self.setups.back_mut().map(|(_, setup)| setup);
-        last.ok_or_else(|| footage::Error::Machine("nothing is set up to draw".to_owned()))
-    }
+    drawing: PictureCache,
 }
 
 impl Driven {
@@ -123,7 +81,7 @@ impl PySimulation {
             trail: Trail::new(&fleet),
             before: simulation.record().clone(),
             simulation,
-            drawing: Drawing::default(),
+            drawing: PictureCache::default(),
         };
         let period = driven.simulation.period();
         // So that there is a state to look at.
@@ -256,7 +214,7 @@ impl PySimulation {
             digest: driven.digest.clone(),
             trail: driven.trail.clone(),
             before: driven.before.clone(),
-            drawing: Drawing::default(),
+            drawing: PictureCache::default(),
         };
         drop(driven);
         match raised() {

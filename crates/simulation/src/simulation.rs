@@ -9,14 +9,14 @@ use crate::plant::Plant;
 use crate::safety::SafetyPipeline;
 use crate::sensing::SensingPipeline;
 use crate::setup::Setup;
-use crate::step::step;
-use formation::{Decision, EdgeLaw, Estimate, Formation, FormationState};
-use laws::BatchLaw;
+use crate::step::{act, sense, step};
+use formation::{AgentAction, Decision, EdgeLaw, Estimate, Formation, FormationState};
+use laws::{BatchLaw, Input};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use vocabulary::{
-    CameraRenderer, EdgeState, EntityId, FleetInfo, Limits, MeasurementRecord, Observation, ObserverStart,
-    Relative, StepRecord, TimeMode,
+    CameraRenderer, Contact, Edge, EdgeState, EntityId, FleetInfo, Limits, MeasurementRecord, Observation,
+    ObserverStart, Relative, Snapshot, StepRecord, TimeMode, TrackingState,
 };
 use world::Handling;
 
@@ -44,6 +44,8 @@ pub struct Simulation {
     /// The moment before, over which the next is written.
     pub(crate) spare: StepRecord,
     pub(crate) sample: u64,
+    /// Whether the first half of the next step is done.
+    pub(crate) sensed: bool,
     pub(crate) last_sample: u64,
     pub(crate) stop_at_contact: bool,
     pub(crate) stopped: bool,
@@ -101,6 +103,7 @@ impl Simulation {
             spare: record.clone(),
             record,
             sample: 0,
+            sensed: false,
             last_sample: sample_at(setup.duration, setup.period),
             stop_at_contact: setup.stop_at_contact,
             stopped: false,
@@ -113,6 +116,53 @@ impl Simulation {
     /// The next control sample: what is measured, what is decided, what is applied. `None` when the run is over.
     pub fn next_record(&mut self) -> Option<&StepRecord> {
         step(self).then_some(&self.record)
+    }
+
+    /// The first half of the next step: time goes on to its sample, and followers know what they know there, see
+    /// [`Simulation::told`]. Their decisions are left to [`Simulation::act`]. False when the run is over.
+    pub fn sense(&mut self) -> bool {
+        sense(self)
+    }
+
+    /// The second half of a step: `actions` decide for the robots that they name, laws for the others. False when the run is
+    /// over.
+    pub fn act(&mut self, actions: impl IntoIterator<Item = (usize, AgentAction)>) -> bool {
+        if !sense(self) {
+            return false;
+        }
+        for (robot, action) in actions {
+            self.state.set_action(robot, action);
+        }
+        act(self)
+    }
+
+    /// Hands to `read` what the law of edge number `edge` is told at the sample that [`Simulation::sense`] went on to, and its true
+    /// tracking error, set point minus truth, [m, rad]. Motions of leaders are those of the sample before.
+    pub fn told<R>(&self, edge: usize, read: impl FnOnce(&Input<'_>, [f64; 2]) -> R) -> R {
+        let (time, seen) = (self.sample as f64 * self.period, &self.observations[edge]);
+        if seen.sight == TrackingState::Truth {
+            return self.formation.told(edge, time, seen, &self.state, read);
+        }
+        let Edge { leader, follower } = self.formation.edges()[edge];
+        let robots = &self.snapshot().robots;
+        let truth = Observation::true_of([leader, follower].map(|k| &robots[k].motion));
+        let error = self.formation.true_error(edge, time, &truth, &self.state);
+        self.formation.told(edge, time, seen, &self.state, |input, _| read(input, error))
+    }
+
+    /// Where everything is as of the last call of [`Simulation::sense`] or [`Simulation::next_record`].
+    pub fn snapshot(&self) -> &Snapshot {
+        self.plant.world().snapshot()
+    }
+
+    /// Contacts that are open or have ended in the last period.
+    pub fn contacts(&self) -> &[Contact] {
+        self.plant.world().contacts()
+    }
+
+    /// Pictures say this of the laws of the run.
+    pub fn set_caption(&mut self, caption: String) {
+        self.fleet.caption = caption;
     }
 
     /// Names, bodies and edges of the run.

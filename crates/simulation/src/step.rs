@@ -12,8 +12,16 @@ use world::World;
 
 /// Computes the next control sample into `run.record`; false when the run is over.
 pub(crate) fn step(run: &mut Simulation) -> bool {
+    sense(run) && act(run)
+}
+
+/// The first half of a step: time goes on to the sample, and followers know what they know there. False when the run is over.
+pub(crate) fn sense(run: &mut Simulation) -> bool {
     if run.is_over() {
         return false;
+    }
+    if run.sensed {
+        return true;
     }
     // 1. The period between the last sample and this one: robots drive, observers follow.
     if run.sample > 0 {
@@ -35,6 +43,15 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
         run.fault = Some(Fault::CameraRenderer(fault));
         return false;
     }
+    prepare(run, time);
+    run.sensed = true;
+    true
+}
+
+/// The second half of a step, after [`sense`]: decisions, and the record. False where a fault ends the run.
+pub(crate) fn act(run: &mut Simulation) -> bool {
+    run.sensed = false;
+    let time = run.sample as f64 * run.period;
     // 6. Every law decides on what its follower knows, leaders before followers (eqs 20, 22, 42). Places are taken as far as
     //    there is room, and what is decided is applied as far as it is safe.
     if let Err(fault) = decide(run, time) {
@@ -53,6 +70,16 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
     run.stopped = run.stop_at_contact && run.record.contacts.iter().any(Contact::of_robot);
     run.sample += 1;
     true
+}
+
+/// Safety filters and those who narrow look round, and memories of laws go on to the sample.
+fn prepare(run: &mut Simulation, time: f64) {
+    let Simulation { formation, state, observations, plant, safety, .. } = run;
+    if let Some(safety) = safety {
+        safety.begin();
+        safety.look(formation, time, observations, state, plant.world().snapshot());
+    }
+    formation.prepare(time, observations, state);
 }
 
 /// Decides the commands of all robots.
@@ -78,10 +105,6 @@ fn decide(run: &mut Simulation, time: f64) -> Result<(), laws::Fault> {
         return Ok(());
     }
     let (snapshot, sensing) = (plant.world().snapshot(), sensing.as_ref());
-    if let Some(safety) = safety {
-        safety.begin();
-        safety.look(formation, time, observations, state, snapshot);
-    }
     let filter = &mut |robot: usize, decided: Command| {
         let limits = formation.limits(robot);
         let (wished, master) =

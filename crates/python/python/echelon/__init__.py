@@ -11,7 +11,7 @@ simulates it to its end, `Scene.simulation` step by step.
 Lengths are in m, angles in rad, times in s. Bearings are taken from the leader's heading, counter-clockwise.
 """
 
-from ._echelon import EDGE_COLUMNS, INPUTS, ROBOT_COLUMNS, Run, Scene, Simulation, Table, __version__, scenes
+from ._echelon import EDGE_COLUMNS, INPUTS, ROBOT_COLUMNS, SIGNALS, Run, Scene, Simulation, Table, __version__, scenes
 from ._errors import (
     BusyError,
     EchelonError,
@@ -30,6 +30,7 @@ __all__ = [
     "EDGE_COLUMNS",
     "INPUTS",
     "ROBOT_COLUMNS",
+    "SIGNALS",
     "BusyError",
     "EchelonError",
     "EndOfRunError",

@@ -14,6 +14,8 @@ __all__ = [
     "EDGE_COLUMNS",
     "INPUTS",
     "ROBOT_COLUMNS",
+    "SIGNALS",
+    "Copies",
     "Run",
     "Scene",
     "Simulation",
@@ -25,6 +27,7 @@ __version__: str
 ROBOT_COLUMNS: list[str]
 EDGE_COLUMNS: list[str]
 INPUTS: list[tuple[str, str, str]]
+SIGNALS: list[str]
 
 def scenes() -> dict[str, str]:
     """The scenes that come with the package."""
@@ -427,3 +430,119 @@ class Simulation:
             Edges × columns; `echelon.EDGE_COLUMNS` names the columns, which end in their units. Flags are 0 or 1. Rows of edges
             whose follower follows nobody are NaN.
         """
+
+@final
+class Copies:
+    """Many copies of a scene, whose followers are driven by actions. `echelon.envs` has environments for learning on top of it."""
+    def __new__(
+        cls,
+        scene: Scene,
+        count: int,
+        *,
+        agents: Sequence[str],
+        columns: Sequence[tuple[str, float, float]],
+        scale: Sequence[tuple[float, float]],
+        residual: bool = False,
+        samples: int = 1,
+        scattered: Sequence[str] = ...,
+        scatter: Sequence[float] = ...,
+        drawn: bool = False,
+        threads: int | None = None,
+        adapter: str = "auto",
+    ) -> Copies:
+        """Makes copies none of which has an episode yet.
+
+        Parameters
+        ----------
+        scene : Scene
+            What is copied.
+        count : int
+            Number of copies.
+        agents : list of str
+            Followers that are driven by actions; the others keep their laws.
+        columns : list of (str, float, float)
+            What each agent observes: a name of `INPUTS`, ``error.distance``, ``error.bearing``, ``error.distance_rate`` or
+            ``error.bearing_rate``, or ``sin(…)`` or ``cos(…)`` of one; what becomes 1; and the bound on what comes out.
+        scale : list of (float, float)
+            Per agent, what an action of 1 is: acceleration, m/s², and turn rate, rad/s.
+        residual : bool, optional
+            Adds actions to what the scene's laws ask for.
+        samples : int, optional
+            Control samples for which an action holds.
+        scattered : list of str, optional
+            Robots that start elsewhere in every episode.
+        scatter : (float, float), optional
+            Within how many m and rad.
+        drawn : bool, optional
+            Keeps what pictures show of the past.
+        threads : int, optional
+            Threads that share the work; one per processor by default.
+        adapter : str, optional
+            Graphics adapter for `render`.
+        """
+    def reset(self, seeds: Sequence[int | None], numbers: Sequence[int]) -> None:
+        """Begins an episode in those copies that have a seed.
+
+        Parameters
+        ----------
+        seeds : list of int or None
+            Per copy.
+        numbers : list of int
+            Per copy: the number of the episode since the copy got its seed, from 0. Starts and noise depend on the two alone.
+        """
+    def step(
+        self, actions: NDArray[np.float64], idle: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8]]:
+        """Drives all copies on by one action, but for those that are idle.
+
+        Parameters
+        ----------
+        actions : ndarray of float64
+            Copies × agents × 2: acceleration and turn rate, each −1 to 1 and cut there.
+        idle : ndarray of bool
+            Per copy.
+
+        Returns
+        -------
+        observations : ndarray of float64
+            Copies × agents × columns.
+        signals : ndarray of float64
+            Copies × agents × `SIGNALS`: the truth.
+        progress : ndarray of uint8
+            Per copy: 1 goes on, 2 has come to its last sample, 3 has stopped at a contact.
+
+        Raises
+        ------
+        ActionError
+            Where an action is no finite number; it names the agent.
+        """
+    def observe(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint8]]:
+        """What all agents observe as they stand; returns what `step` does."""
+    def told(self) -> NDArray[np.float64]:
+        """What the laws of all agents are told as they stand.
+
+        Returns
+        -------
+        ndarray of float64
+            `INPUTS` × copies × agents.
+        """
+    def render(
+        self, copy: int, view: str | None = None, size: Sequence[int] | None = None
+    ) -> NDArray[np.uint8]:
+        """A picture of a copy as it stands.
+
+        Parameters
+        ----------
+        copy : int
+            Its number.
+        view, size
+            As for `Simulation.render`.
+
+        Returns
+        -------
+        ndarray of uint8
+            Height × width × 3: red, green, blue.
+        """
+    @property
+    def digests(self) -> list[str]:
+        """Of the trajectory of every copy, as far as its agents have decided; an empty text before its first episode."""

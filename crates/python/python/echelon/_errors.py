@@ -79,5 +79,9 @@ class BusyError(EchelonError, RuntimeError):
     """Another thread is at work on the same simulation."""
 
 
+class ActionError(EchelonError, ValueError):
+    """An action of an agent is no finite number, or actions have the wrong shape."""
+
+
 class RenderingError(EchelonError, RuntimeError):
     """There is no adapter to draw with, or it failed."""

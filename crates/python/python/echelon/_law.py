@@ -61,6 +61,10 @@ class Observations:
     """
 
     __slots__ = ("followers", "frame", "index", "leader", "meets", "own", "period", "wanted")
+    own: _Group
+    leader: _Group
+    wanted: _Group
+    frame: _Group
 
     def __init__(self, numbers: np.ndarray, followers: list[str], index: np.ndarray, meets: np.ndarray,
                  period: float, knows: str) -> None:
