@@ -314,7 +314,7 @@ class TestBadInput:
         [
             (lambda: FormationEnv(SCENE, followers="zoe"), "no follower called `zoe`"),
             (lambda: FormationEnv(SCENE, followers=["robot-1"]), "no follower called `robot-1`"),
-            (lambda: FormationEnv(SCENE, Task(observation=("leader.distnce",))), "leader.distance,"),
+            (lambda: FormationEnv(SCENE, Task(observation=("leader.distanse",))), "leader.distance,"),
             (lambda: FormationEnv(SCENE, render_mode="human"), "no window"),
             (lambda: FormationEnv(SCENE.set({"time.mode": "continuous"})), "sampled"),
             (lambda: FormationVectorEnv(SCENE, num_envs=0), "one copy"),

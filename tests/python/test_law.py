@@ -137,7 +137,7 @@ def test_a_law_is_told_what_law_files_are_told():
         with pytest.raises(AttributeError, match='knows="motion"'):
             _ = told.leader.speed
         with pytest.raises(AttributeError, match="distance"):
-            _ = told.leader.distnce
+            _ = told.leader.distanse
         return ZERO
 
     SCENE.set({"time.duration": 0.1}).run(law=law)

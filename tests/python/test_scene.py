@@ -62,14 +62,14 @@ def test_set_returns_a_new_scene():
 
 def test_everything_that_is_wrong_is_reported_at_once(tmp_path):
     path = tmp_path / "wrong.toml"
-    path.write_text(TEXT.replace("distance = 2.0", "distnce = 2.0").replace("speed = 1.0", "speed = -1.0"))
-    with pytest.raises(SceneError, match="distnce") as caught:
+    path.write_text(TEXT.replace("distance = 2.0", "distanse = 2.0").replace("speed = 1.0", "speed = -1.0"))
+    with pytest.raises(SceneError, match="distanse") as caught:
         Scene.load(path)
     error = caught.value
     assert isinstance(error, echelon.EchelonError) and isinstance(error, ValueError)
     assert len(error.errors) >= 2 and error.errors[0].file == str(path)
     assert (error.file, error.line, error.column) == error.errors[0][:3]
-    [typo] = [fault for fault in error.errors if "distnce" in fault.message]
+    [typo] = [fault for fault in error.errors if "distanse" in fault.message]
     assert (typo.line, typo.column, typo.suggestion) == (11, 1, "distance")
 
 

@@ -129,7 +129,7 @@ mod tests {
         assert!((value("error.bearing", 1.0, 10.0) - (6.0 - std::f64::consts::TAU)).abs() < 1e-12);
         assert_eq!(value("sin(leader.view_angle)", 1.0, 1.0), math::sin(0.5));
         assert!(
-            "leader.distnce"
+            "leader.distanse"
                 .parse::<ObservationColumn>()
                 .is_err_and(|text| text.contains("leader.distance,"))
         );
