@@ -7,8 +7,10 @@ import subprocess
 import sys
 
 import echelon
+import echelon.envs
 
-PAGE = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
+ROOT = pathlib.Path(__file__).parents[2]
+PAGE, REFERENCE = ROOT / "docs" / "python.md", ROOT / "docs" / "python-api.md"
 
 
 def test_the_page_runs_from_top_to_bottom(tmp_path, monkeypatch):
@@ -33,6 +35,29 @@ def test_everything_public_is_documented():
             for method in own:
                 if not method.startswith("_"):
                     assert getattr(thing, method).__doc__, f"{name}.{method}"
+
+
+def test_the_reference_is_up_to_date():
+    script = ROOT / "scripts" / "python-reference"
+    done = subprocess.run([sys.executable, script, "--check"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_the_reference_has_everything_public():
+    text = REFERENCE.read_text(encoding="utf-8")
+    headings = set(re.findall(r"^###+ `([\w.]+)`$", text, re.MULTILINE))
+    values = set(re.findall(r"`(\w+)`", " ".join(re.findall(r"^\| (`.+?`) \|", text, re.MULTILINE))))
+    for module in (echelon, echelon.envs):
+        for name in module.__all__:
+            thing = getattr(module, name)
+            assert name in (headings if callable(thing) else headings | values), name
+            methods = [key for key, value in vars(thing).items() if callable(value)] if isinstance(thing, type) else []
+            own = [key for key in methods if not key.startswith("_") and key not in getattr(thing, "_fields", ())]
+            # What a class only hands on from another library is that library's to document.
+            assert {f"{name}.{key}" for key in own if getattr(thing, key).__doc__} <= headings, name
+    anchors = {"".join(c for c in heading.lower() if c.isalnum() or c in "-_") for heading in headings}
+    anchors |= {"echelon", "echelonenvs"}
+    assert set(re.findall(r"\]\(#(.*?)\)", text)) <= anchors
 
 
 def test_the_types_are_those_of_the_extension(tmp_path):

@@ -9,6 +9,17 @@ simulates it to its end, `Scene.simulation` step by step.
 'complete'
 
 Lengths are in m, angles in rad, times in s. Bearings are taken from the leader's heading, counter-clockwise.
+
+Attributes
+----------
+ROBOT_COLUMNS, EDGE_COLUMNS : list of str
+    Columns of `Simulation.robots` and `Simulation.edges`, whose names end in their units.
+INPUTS : list of (str, str, str)
+    What a law is told: names, units and meanings.
+SIGNALS : list of str
+    What rewards are made from, the columns of `echelon.envs.Signals`.
+__version__ : str
+    Version of the package.
 """
 
 from ._echelon import EDGE_COLUMNS, INPUTS, ROBOT_COLUMNS, SIGNALS, Run, Scene, Simulation, Table, __version__, scenes
