@@ -99,7 +99,7 @@ fn certify_names_the_fault_of_a_law_and_tries_its_parameters() {
     let names: Vec<_> = gains.iter().filter_map(|gain| gain["gain"].as_str()).collect();
     assert!(code == 0 && names.contains(&"T") && names.contains(&"ε distance"), "{names:?}");
     // Where the error is measured as something, a parameter moves it.
-    let moved = gains.iter().filter(|gain| gain["gain"] == "T").flat_map(|gain| gain["edges"].as_array());
+    let moved = gains.iter().filter(|gain| gain["gain"] == "T").filter_map(|gain| gain["edges"].as_array());
     assert_eq!(moved.flatten().count(), 2);
 }
 

@@ -255,7 +255,9 @@ impl<'a> Checker<'a, '_> {
             if matches!(stem, "leader" | "wanted" | "frame") || group == "own" {
                 return self.input_of(group, member, at);
             }
-            if let Some(input) = self.input_meant(group, member) {
+            if stem != "own"
+                && let Some(input) = self.input_meant(group, member)
+            {
                 return self.mistake(at, format!("nothing is called `{group}`; did you mean `{input}`?"));
             }
         }
