@@ -129,6 +129,7 @@ impl Case {
                 heading: Heading::Leader,
             },
             custom: self.from_file.then(|| self.custom()).transpose()?,
+            batch: None,
             observer: Observer {
                 epsilon: [c.epsilon; 2],
                 alpha1: [c.alpha1; 2],

@@ -32,7 +32,7 @@ fn dependencies(all_kinds: bool) -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 20] = [
+const ARROWS: [(&str, &[&str]); 22] = [
     ("vocabulary", &[]),
     ("output", &[]),
     ("film", &["vocabulary", "output"]),
@@ -63,6 +63,7 @@ const ARROWS: [(&str, &[&str]); 20] = [
             "recording",
         ],
     ),
+    ("footage", &["vocabulary", "output", "scene", "studies", "metrics", "recording", "film", "rendering"]),
     ("report", &["vocabulary", "scene", "simulation", "studies", "metrics", "figures"]),
     (
         "lab",
@@ -93,16 +94,31 @@ const ARROWS: [(&str, &[&str]); 20] = [
             "recording",
             "film",
             "rendering",
+            "footage",
             "figures",
             "report",
             "lab",
         ],
     ),
     ("web", &["lab"]),
+    (
+        "python",
+        &[
+            "vocabulary",
+            "laws",
+            "scene",
+            "simulation",
+            "studies",
+            "metrics",
+            "recording",
+            "rendering",
+            "footage",
+        ],
+    ),
 ];
 
 /// Heavy crates and the only members that may name them.
-const LEAVES: [(&str, &[&str]); 11] = [
+const LEAVES: [(&str, &[&str]); 12] = [
     ("wgpu", &["rendering", "lab"]),
     ("eframe", &["lab"]),
     ("parquet", &["recording"]),
@@ -114,6 +130,7 @@ const LEAVES: [(&str, &[&str]); 11] = [
     ("resvg", &["report"]),
     ("svg2pdf", &["report"]),
     ("wasmi", &["laws"]),
+    ("pyo3", &["python"]),
 ];
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Args;
+use footage::PictureOptions;
 use rendering::{AdapterChoice, Gpu};
 use scene::Override;
 use std::ops::RangeInclusive;
@@ -59,7 +60,7 @@ impl AdapterArgs {
 }
 
 /// How pictures look.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct PictureArgs {
     /// View: snake, snake-eye, top, orbit, follow:ROBOT, camera:ROBOT, fixed, or `fixed:ex,ey,ez,tx,ty,tz[,degrees]` from an eye
     /// point to a target in m, with a field of view; several views joined by '+' split the picture
@@ -84,6 +85,14 @@ pub(crate) struct PictureArgs {
     /// Samples per pixel (MSAA): 4, or 1 for speed
     #[arg(long, default_value_t = 4)]
     pub(crate) samples: u32,
+}
+
+impl PictureArgs {
+    /// As those who draw take them.
+    pub(crate) fn options(&self) -> PictureOptions {
+        let Self { view, size, without, overlay, inset_camera, scale, samples } = self.clone();
+        PictureOptions { view, size, without, overlay, inset_camera, scale, samples }
+    }
 }
 
 pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {

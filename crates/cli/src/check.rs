@@ -37,20 +37,12 @@ pub(crate) fn check(args: &CheckArgs) -> Outcome {
                 say(&format!("# {name}: {}", counted(run.simulation.fleet().robots.len(), "robot")));
                 say(&run.scene.to_toml());
             }
-            Ok(SceneRun { scene, simulation }) => {
-                let fleet = simulation.fleet();
-                for remark in scene.late().into_iter().chain(scene.unused()) {
+            Ok(run) => {
+                for remark in run.remarks() {
                     note(&format!("{name}: note: {remark}"));
                 }
-                for slow in studies::too_slow_leads(&simulation, scene.time.duration) {
-                    note(&format!("{name}: note: {slow}"));
-                }
-                for gate in studies::gates(&simulation, scene.time.duration) {
-                    note(&format!("{name}: note: {gate}"));
-                }
-                for line in studies::in_line(&simulation) {
-                    note(&format!("{name}: note: {line}"));
-                }
+                let SceneRun { scene, simulation } = run;
+                let fleet = simulation.fleet();
                 let (robots, edges) = (fleet.robots.len(), fleet.edges.len());
                 let length = scene.time.duration;
                 let (robots, edges) = (counted(robots, "robot"), counted(edges, "edge"));

@@ -1,8 +1,6 @@
 //! What can end a subcommand early, and the exit code it ends with.
 
 use crate::print::note;
-use vocabulary::counted;
-
 /// Why the program does not end with 0.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -55,51 +53,43 @@ impl Failure {
     }
 }
 
+impl From<footage::Error> for Failure {
+    fn from(error: footage::Error) -> Self {
+        match error {
+            footage::Error::Broken(text) => Self::Broken(text),
+            footage::Error::Usage(text) => Self::Usage(text),
+            footage::Error::Machine(text) => Self::Machine(text),
+            footage::Error::Interrupted(text) => Self::Interrupted(text),
+        }
+    }
+}
+
 impl From<studies::Error> for Failure {
     fn from(error: studies::Error) -> Self {
-        match error {
-            studies::Error::Usage(text) => Self::Usage(text),
-            studies::Error::Build(error) => Self::Usage(error.to_string()),
-            studies::Error::NotFinite(what) => Self::Broken(what.to_string()),
-            studies::Error::Camera(text) => Self::Machine(text),
-            studies::Error::Interrupted { samples } => {
-                Self::Interrupted(format!("after {}", counted(samples, "sample")))
-            }
-            studies::Error::Output(error) => error.into(),
-            studies::Error::Recording(error) => error.into(),
-        }
+        footage::Error::from(error).into()
     }
 }
 
 impl From<rendering::Error> for Failure {
     fn from(error: rendering::Error) -> Self {
-        let text = error.to_string();
-        if error.is_usage() { Self::Usage(text) } else { Self::Machine(text) }
+        footage::Error::from(error).into()
     }
 }
 
 impl From<film::Error> for Failure {
     fn from(error: film::Error) -> Self {
-        let text = error.to_string();
-        if error.is_usage() { Self::Usage(text) } else { Self::Machine(text) }
+        footage::Error::from(error).into()
     }
 }
 
 impl From<recording::Error> for Failure {
     fn from(error: recording::Error) -> Self {
-        let text = error.to_string();
-        let usage = match &error {
-            recording::Error::Output(error) => error.is_usage(),
-            recording::Error::Log { .. } => true,
-            recording::Error::Table { .. } => false,
-        };
-        if usage { Self::Usage(text) } else { Self::Machine(text) }
+        footage::Error::from(error).into()
     }
 }
 
 impl From<output::Error> for Failure {
     fn from(error: output::Error) -> Self {
-        let text = error.to_string();
-        if error.is_usage() { Self::Usage(text) } else { Self::Machine(text) }
+        footage::Error::from(error).into()
     }
 }

@@ -6,7 +6,7 @@ use crate::load::read;
 use crate::print::{json, note, say, verbatim};
 use clap::{Args, Subcommand};
 use laws::{CustomLaw, Declaration, Knowledge, LawFile, Parameter, SHIPPED_LAWS, Scale, TEMPLATE, shipped};
-use scene::{Diagnostic, WrittenLaw, load_law};
+use scene::{Diagnostic, Diagnostics, WrittenLaw, load_law};
 use serde_json::{Value, json};
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
@@ -60,9 +60,9 @@ struct TestArgs {
     /// Wanted distance from every leader, m
     #[arg(long, value_name = "METRES", default_value_t = 2.0)]
     distance: f64,
-    /// Wanted bearing from the leader, degrees; left free behind several leaders
-    #[arg(long, value_name = "DEGREES", default_value_t = -135.0, allow_negative_numbers = true)]
-    bearing: f64,
+    /// Wanted bearing from the leader, degrees; by default -135. Behind several leaders its place decides
+    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_hyphen_values = true)]
+    bearing: Option<f64>,
     /// Speed of the leaders, m/s
     #[arg(long, value_name = "M/S", default_value_t = 1.0)]
     speed: f64,
@@ -120,7 +120,7 @@ fn known(declaration: &Declaration) -> String {
 fn declared_json(declaration: &Declaration) -> Value {
     let parameter = |own: &Parameter| {
         json!({
-            "name": own.name, "symbol": own.symbol, "unit": own.unit.to_string(), "default": own.default,
+            "name": own.name, "symbol": own.symbol, "unit": own.unit_name, "default": own.default,
             "range": own.range, "logarithmic": own.scale == Scale::Logarithmic, "help": own.help,
         })
     };
@@ -180,7 +180,7 @@ fn show_of_scene(path: &Path) -> Outcome {
 fn check(paths: &[PathBuf], as_json: bool) -> Outcome {
     let (mut problems, mut all) = (vec![], vec![]);
     for path in paths {
-        let mut found = match load_law(path) {
+        let mut found = match read_law(path) {
             Ok(law) if as_json => declared_json(law.declaration()),
             Ok(law) => {
                 tell(path, law.declaration());
@@ -188,7 +188,7 @@ fn check(paths: &[PathBuf], as_json: bool) -> Outcome {
             }
             Err(mistakes) => {
                 problems.push(mistakes.to_string());
-                json!({ "mistakes": mistakes.all().iter().map(mistake_json).collect::<Vec<_>>() })
+                mistakes_json(&mistakes)
             }
         };
         found["law"] = json!(path.display().to_string());
@@ -198,6 +198,21 @@ fn check(paths: &[PathBuf], as_json: bool) -> Outcome {
         json(&all.into());
     }
     if problems.is_empty() { Ok(()) } else { Err(Failure::Usage(problems.join("\nerror: "))) }
+}
+
+/// A law; what is a scene is not taken for the text of one.
+fn read_law(path: &Path) -> Result<WrittenLaw, Diagnostics> {
+    let law = load_law(path);
+    let is_scene = path.extension().is_some_and(|extension| extension == "toml");
+    let hint =
+        "is a scene, not a law: `echelon check` checks scenes, and `echelon laws show` prints the law of one";
+    law.map_err(
+        |mistakes| if is_scene && path.is_file() { Diagnostics::of_file(path, hint) } else { mistakes },
+    )
+}
+
+fn mistakes_json(mistakes: &Diagnostics) -> Value {
+    json!({ "mistakes": mistakes.all().iter().map(mistake_json).collect::<Vec<_>>() })
 }
 
 /// A mistake with its place; without one where the whole file is meant.
@@ -212,11 +227,12 @@ fn mistake_json(mistake: &Diagnostic) -> Value {
 /// What a law declares.
 fn tell(path: &Path, declaration: &Declaration) {
     let time = if declaration.continuous { "samples and continuous time" } else { "samples" };
-    say(&format!("{}: good: {}; {}; for {time}", path.display(), declaration.title, known(declaration)));
+    let title = if declaration.title.is_empty() { "a law without a title" } else { &declaration.title };
+    say(&format!("{}: good: {title}; {}; for {time}", path.display(), known(declaration)));
     for own in &declaration.parameters {
         let scale = if own.scale == Scale::Logarithmic { ", logarithmic" } else { "" };
         let [low, high] = own.range;
-        let text = format!("  {} = {}{}", own.name, own.default, own.unit.behind());
+        let text = format!("  {} = {}{}", own.name, own.default, own.behind());
         say(&format!("{text:<24} {low} to {high}{scale}  {}", own.help));
     }
     let names = |all: &[laws::Quantity]| {
@@ -248,12 +264,25 @@ fn new(file: &Path) -> Outcome {
         let text = format!("{} is a law that comes with the program: choose another name", file.display());
         return Err(Failure::Usage(text));
     }
+    if file.extension().is_some_and(|extension| extension == "wasm") {
+        let text = format!("{}: a new law is text: choose a name such as mine.law", file.display());
+        return Err(Failure::Usage(text));
+    }
     let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(failed)?;
     opened.write_all(TEMPLATE.as_bytes()).map_err(failed)?;
     let path = file.display();
     note(&format!("{path}: try it with echelon lab circle-three --set law.file={path}"));
     say(&path.to_string());
     Ok(())
+}
+
+/// Bearing behind one leader where none is said, degrees.
+const BEARING: f64 = -135.0;
+
+/// Degrees, as a number or as scenes write them, "-135 deg".
+fn degrees(text: &str) -> Result<f64, String> {
+    let number = text.trim().trim_end_matches("deg").trim_end_matches('°').trim_end();
+    number.parse().map_err(|_| "write degrees, such as -135".to_owned())
 }
 
 /// Bounds of what a test takes, by option: all are finite.
@@ -266,14 +295,21 @@ fn bounded(name: &str, value: f64, [low, high]: [f64; 2]) -> Outcome {
 
 fn test(args: &TestArgs, as_json: bool) -> Outcome {
     bounded("distance", args.distance, [0.01, 1000.0])?;
-    bounded("bearing", args.bearing, [-180.0, 180.0])?;
+    bounded("bearing", args.bearing.unwrap_or(BEARING), [-180.0, 180.0])?;
     bounded("speed", args.speed, [0.001, 100.0])?;
     bounded("turn-rate", args.turn_rate, [-10.0, 10.0])?;
     bounded("period", args.period, [1e-4, 1.0])?;
-    let law = load_law(&args.law).map_err(|faults| Failure::Usage(faults.to_string()))?;
+    let law = read_law(&args.law).map_err(|mistakes| {
+        if as_json {
+            json(&mistakes_json(&mistakes));
+        }
+        Failure::Usage(mistakes.to_string())
+    })?;
     let parameters = parameters(&law, &args.set)?;
     let leaders = leaders(&law, args)?;
-    let end = close(&*law.law(), &parameters, &leaders).map_err(|fault| {
+    let declared = &law.declaration().parameters;
+    let told: Vec<f64> = declared.iter().zip(&parameters).map(|(own, value)| own.as_told(*value)).collect();
+    let end = close(&*law.law(), &told, &leaders).map_err(|fault| {
         let mark = if fault.place.is_some() { ":" } else { ": " };
         Failure::Broken(format!("{}{mark}{fault}", args.law.display()))
     })?;
@@ -300,7 +336,9 @@ fn parameters(law: &WrittenLaw, set: &[String]) -> Result<Vec<f64>, Failure> {
         };
         let [low, high] = declared[index].range;
         let value = value.trim().parse::<f64>().ok().filter(|value| (low..=high).contains(value));
-        values[index] = value.ok_or_else(|| usage(format!("must be a number from {low} to {high}")))?;
+        values[index] = value.ok_or_else(|| {
+            usage(format!("must be a number from {low} to {high}{}", declared[index].behind()))
+        })?;
     }
     Ok(values)
 }
@@ -308,7 +346,7 @@ fn parameters(law: &WrittenLaw, set: &[String]) -> Result<Vec<f64>, Failure> {
 /// Leaders side by side, a distance apart, and the follower near its place.
 fn leaders(law: &WrittenLaw, args: &TestArgs) -> Result<SteadyLeaders, Failure> {
     let TestArgs { distance, speed, turn_rate, period, .. } = *args;
-    let (count, bearing) = (law.declaration().leaders, args.bearing.to_radians());
+    let (count, bearing) = (law.declaration().leaders, args.bearing.unwrap_or(BEARING).to_radians());
     let (places, wanted, start) = match count {
         1 => {
             let (sin, cos) = math::sin_cos(bearing);
@@ -318,8 +356,22 @@ fn leaders(law: &WrittenLaw, args: &TestArgs) -> Result<SteadyLeaders, Failure> 
         2 => {
             let side = 0.5 * distance;
             let behind = -(distance * distance - side * side).sqrt();
+            if args.bearing.is_some() {
+                let text = "--bearing is for one leader: behind two the follower's place decides";
+                return Err(Failure::Usage(text.to_owned()));
+            }
             let places = vec![[0.0, side], [0.0, -side]];
-            (places, vec![[Some(distance), None]; 2], [behind, 0.0])
+            // Only what the law reads of a set point is wanted.
+            let reads = |leader: usize, part: usize| {
+                let reads = &law.declaration().reads;
+                reads.iter().any(|(of, kind)| *of == leader && kind.wanted() == Some(part))
+            };
+            let wanted = |(leader, [_, y]): (usize, &[f64; 2])| {
+                let bearing = math::atan2(-y, behind);
+                [reads(leader, 0).then_some(distance), reads(leader, 1).then_some(bearing)]
+            };
+            let wanted = places.iter().enumerate().map(wanted).collect();
+            (places, wanted, [behind, 0.0])
         }
         _ => {
             let text = format!("{} looks at {count} leaders: a test takes one or two", law.name());
@@ -332,10 +384,11 @@ fn leaders(law: &WrittenLaw, args: &TestArgs) -> Result<SteadyLeaders, Failure> 
 }
 
 fn tell_end(law: &WrittenLaw, parameters: &[f64], args: &TestArgs, end: &LoopEnd, stable: bool) {
-    let TestArgs { distance, bearing, speed, turn_rate, period, .. } = args;
+    let TestArgs { distance, speed, turn_rate, period, .. } = args;
+    let bearing = args.bearing.unwrap_or(BEARING);
     say(&format!("{}: {}", args.law.display(), law.declaration().title));
     let declared = law.declaration().parameters.iter().zip(parameters);
-    let value = |(own, value): (&Parameter, &f64)| format!("{} {value}{}", own.symbol, own.unit.behind());
+    let value = |(own, value): (&Parameter, &f64)| format!("{} {value}{}", own.symbol, own.behind());
     let values: Vec<String> = declared.map(value).collect();
     if !values.is_empty() {
         say(&values.join(" · "));
@@ -353,12 +406,14 @@ fn tell_end(law: &WrittenLaw, parameters: &[f64], args: &TestArgs, end: &LoopEnd
     for (index, [distance, bearing]) in end.errors.iter().enumerate() {
         let of = if end.errors.len() > 1 { format!(" to leader {}", index + 1) } else { String::new() };
         let [distance, bearing] = [rounded(1e3 * distance, 3), rounded(bearing.to_degrees(), 4)];
-        say(&format!("after a minute or sooner: error {distance} mm, {bearing}°{of}"));
+        say(&format!("after {:.0} s: error {distance} mm, {bearing}°{of}", end.time));
     }
     let Some(poles) = &end.poles else {
         let moved = rounded(1e3 * end.moved, 3);
         let text = "it does not come to rest, so there is nothing to linearise about";
-        return say(&format!("by then it still moves by {moved} mm, mrad or mm/s within a second: {text}"));
+        return say(&format!(
+            "in its last second it moves by {moved} (mm, mrad or mm/s, the largest): {text}"
+        ));
     };
     say("\npole, 1/s                 damping  time constant");
     for pole in poles.iter().filter(|pole| pole.im >= 0.0) {
@@ -368,7 +423,7 @@ fn tell_end(law: &WrittenLaw, parameters: &[f64], args: &TestArgs, end: &LoopEnd
     let apart: Vec<&str> =
         end.apart.iter().filter_map(|index| memory.get(*index)).map(|own| &*own.name).collect();
     if !apart.is_empty() {
-        say(&format!("nothing depends on {}: without a pole", apart.join(", ")));
+        say(&format!("without effect on the motion, and without a pole here: {}", apart.join(", ")));
     }
     let grows = poles.iter().any(|pole| pole.re > MARGINAL);
     say(match (stable, grows) {

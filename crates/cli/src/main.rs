@@ -21,8 +21,6 @@ mod laws;
 mod link;
 mod load;
 mod manuals;
-mod picture;
-mod playback;
 mod print;
 mod program;
 mod progress;
@@ -34,7 +32,7 @@ mod run;
 mod scenes;
 mod stills;
 mod summary;
-mod times;
+mod terminal;
 mod tune;
 mod welcome;
 

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::interrupt;
 use crate::print::note;
 use crate::progress::Progress;
-use crate::times::shown;
+use footage::times::shown;
 use recording::Manifest;
 use recording::log::{self, Log};
 use scene::Scene;

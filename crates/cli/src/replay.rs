@@ -3,12 +3,12 @@
 use crate::args::{AdapterArgs, PictureArgs};
 use crate::failure::Failure;
 use crate::load::{build, stem};
-use crate::picture::DrawJob;
 use crate::print::{json, note, say};
 use crate::progress::Progress;
 use crate::recorded::Recorded;
 use crate::{Outcome, cameras, capture, film, interrupt};
 use clap::Args;
+use footage::{CaptureJob, DrawJob, FilmJob, Preset, captions, times};
 use recording::{Manifest, Status};
 use serde_json::json;
 use std::path::PathBuf;
@@ -37,8 +37,8 @@ pub(crate) struct ReplayArgs {
     #[arg(long, requires = "film")]
     ffmpeg: bool,
     /// Measures, cards and, where the scene has no storyboard, shots for a purpose
-    #[arg(long, value_enum, requires = "film", conflicts_with = "view")]
-    preset: Option<film::Preset>,
+    #[arg(long, value_parser = film::presets(), requires = "film", conflicts_with = "view")]
+    preset: Option<Preset>,
     #[command(flatten)]
     picture: PictureArgs,
     #[command(flatten)]
@@ -80,7 +80,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
     let log = run.log()?;
     let begins = log.begins();
     if let Some(early) = args.capture.iter().find(|time| **time < begins - 1e-9) {
-        let begins = crate::times::shown(begins);
+        let begins = times::shown(begins);
         let text = format!("{early} s is not in {}: it begins at {begins} s", log.path().display());
         return Err(Failure::Usage(text));
     }
@@ -93,10 +93,8 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
     }
     let source = || Ok(RecordSource::Log(Box::new(log.records())));
     let draw = DrawJob {
-        picture: &args.picture,
-        adapter: &args.adapter.name,
-        quiet: args.quiet,
-        json: args.json,
+        picture: args.picture.options(),
+        adapter: args.adapter.name.clone(),
         name,
         fleet,
         duration,
@@ -104,7 +102,7 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
         view,
     };
     if let Some(path) = &args.film {
-        let job = film::FilmJob {
+        let job = FilmJob {
             draw,
             path: path.clone(),
             ffmpeg: args.ffmpeg,
@@ -114,12 +112,12 @@ fn draw(args: &ReplayArgs, run: Recorded) -> Outcome {
             description,
             judging: expect.judging(duration),
             run: format!("{:?}", log.manifest()),
-            captions: scene.as_ref().map_or_else(Vec::new, film::captions),
+            captions: scene.as_ref().map_or_else(Vec::new, captions),
         };
-        return film::shoot(job, |_| source());
+        return film::shoot(job, args.quiet, args.json, |_| source());
     }
-    let job = capture::CaptureJob { draw, out: &args.out, at: &args.capture, of: &args.run };
-    capture::draw(&job, |_| source())
+    let job = CaptureJob { draw, out: &args.out, at: &args.capture, of: &args.run };
+    capture::draw(&job, args.quiet, args.json, |_| source())
 }
 
 /// The folder's name, or that of the file where it says more than that it is a log.

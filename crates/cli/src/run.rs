@@ -79,7 +79,7 @@ fn judge(args: &RunArgs, cases: &mut Vec<ReportedCheck>) -> Outcome {
         !interrupt::asked()
     });
     let wall = began.elapsed().as_secs_f64();
-    let JudgedRun { status, steps, metrics, digest, digest_then, findings, written } =
+    let JudgedRun { status, steps, metrics, digest, digest_then, findings, written, .. } =
         judged.map_err(|error| match error {
             Error::Recording(error) => {
                 Failure::from(error).but(&folder.as_deref().map_or_else(String::new, kept))

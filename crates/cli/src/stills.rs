@@ -5,13 +5,13 @@ mod strobe;
 use crate::args::{PictureArgs, SceneArgs};
 use crate::failure::Failure;
 use crate::load::{load, stem};
-use crate::picture::RenderSetup;
-use crate::playback::Playback;
 use crate::print::{json, say};
 use crate::progress::Progress;
 use crate::replaced::Replaced;
+use crate::terminal::Terminal;
 use crate::{Outcome, cameras, interrupt};
 use clap::Args;
+use footage::{Playback, RenderSetup};
 use output::Place;
 use rendering::{PictureSpec, Style, ViewLayout};
 use serde_json::json;
@@ -51,14 +51,17 @@ pub(crate) fn stills(args: &StillsArgs) -> Outcome {
     let tile = args.picture.size.unwrap_or(TILE);
     let large = args.picture.size.unwrap_or(STROBE);
     let view = loaded.scene.views.default.clone();
-    let mut small = RenderSetup::open(&args.scene.adapter.name, &args.picture, &fleet, &view, tile)?;
+    let terminal = Terminal::new(args.scene.quiet);
+    let mut small =
+        RenderSetup::open(&args.scene.adapter.name, &args.picture.options(), &fleet, &view, tile, &terminal)?;
     cameras::attach(&mut loaded, Some(&small.gpu), &args.scene.adapter.name, None)?;
     let duration = loaded.scene.time.duration;
 
     // Both are drawn from the same moments.
     let steps = u64::from(2 * args.count);
     let progress = Progress::begin(&format!("Drawing stills of {name}"), steps, quiet);
-    let mut playback = Playback::new(&fleet, RecordSource::Run(Box::new(loaded.simulation)));
+    let mut playback =
+        Playback::new(&fleet, RecordSource::Run(Box::new(loaded.simulation)), &interrupt::asked);
     let (mut records, mut tiles): (Vec<StepRecord>, Vec<Picture>) = (Vec::new(), Vec::new());
     for k in 0..args.count {
         let record = playback.at(duration * f64::from(k) / f64::from(args.count - 1));

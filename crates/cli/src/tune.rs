@@ -57,6 +57,11 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
         ));
         row("as it is", first);
         row("best", best);
+        if let Some((law, names)) =
+            studies::tune::tuned(&scene).filter(|(_, names)| names.len() < scene.followers().count())
+        {
+            say(&format!("\ntuned: {law}, of {}; other followers keep theirs", names.join(", ")));
+        }
         say(&format!("\nof {}; in the scene:\n", counted(tried, "run")));
         say(&in_scene(&best.gains));
     }
@@ -73,21 +78,14 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
 fn in_scene(gains: &BTreeMap<String, f64>) -> String {
     match ["k", "beta", "slope", "epsilon"].map(|name| gains.get(name)) {
         [Some(k), Some(beta), Some(slope), Some(epsilon)] if gains.len() == 4 => {
-            format!(
-                "[law]\nk = {k:.2}\nbeta = {beta:.2}\nslope = {slope:.1}\n\n[observer]\nepsilon = {epsilon:.4}"
-            )
+            format!("[law]\nk = {k}\nbeta = {beta}\nslope = {slope}\n\n[observer]\nepsilon = {epsilon}")
         }
         _ => {
-            let value = |(name, value): (&String, &f64)| format!("{name} = {}", rounded(*value));
+            let value = |(name, value): (&String, &f64)| format!("{name} = {value}");
             let all: Vec<String> = gains.iter().map(value).collect();
             format!("[law]\nparameters = {{ {} }}", all.join(", "))
         }
     }
-}
-
-/// A value to four digits.
-fn rounded(value: f64) -> f64 {
-    format!("{value:.3e}").parse().unwrap_or(value)
 }
 
 fn row(name: &str, trial: &Trial) {

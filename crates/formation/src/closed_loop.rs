@@ -6,7 +6,7 @@
 //! eigenvalues z of the map's derivative, which is taken by central differences. Rates are true, and no limit acts.
 
 use crate::relative::Geometry;
-use laws::{CustomLaw, Fault, Input, LeaderInput, Noise};
+use laws::{CustomLaw, Fault, Input, InputKind, LeaderInput, Noise};
 use nalgebra::DMatrix;
 use vocabulary::{Command, MotionInput, Pose, Relative, SetPoint, math, wrap};
 
@@ -30,6 +30,8 @@ pub struct SteadyLeaders {
 /// How a loop ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoopEnd {
+    /// When it ends, s.
+    pub time: f64,
     /// Errors of distance and bearing for each leader, [m, rad]; 0 for a part that is left free.
     pub errors: Vec<[f64; 2]>,
     /// What the law asks for.
@@ -85,6 +87,9 @@ struct ClosedLoop<'a> {
 pub fn close(law: &dyn CustomLaw, parameters: &[f64], leaders: &SteadyLeaders) -> Result<LoopEnd, Fault> {
     let closed = ClosedLoop { law, parameters, leaders, motions: motions(leaders) };
     let mut state = closed.start()?;
+    let mut sample = 0;
+    // What reads the clock may rest for a while and move on.
+    let reads_time = law.declaration().reads.iter().any(|(_, kind)| *kind == InputKind::Time);
     let still = (STILL / leaders.period).ceil() as usize;
     let longest = (LONGEST / leaders.period).ceil() as usize;
     let (mut settled, mut moved) = (false, 0.0_f64);
@@ -93,18 +98,20 @@ pub fn close(law: &dyn CustomLaw, parameters: &[f64], leaders: &SteadyLeaders) -
         let before = state.clone();
         moved = 0.0;
         for _ in 0..still {
-            (state, command) = closed.next(&state)?;
+            (state, command) = closed.next(&state, sample)?;
+            sample += 1;
             let change = state.iter().zip(&before).take(BODY).map(|(now, before)| (now - before).abs());
             moved = change.fold(moved, f64::max);
         }
         settled = moved < LEAST;
-        if settled || !state.iter().all(|x| x.abs() < 1e6) {
+        if settled && !reads_time || !state.iter().all(|x| x.abs() < 1e6) {
             break;
         }
     }
     let errors = (0..closed.motions.len()).map(|k| closed.error(k, &state)).collect();
-    let (poles, apart) = if settled { closed.poles(&state)? } else { (None, vec![]) };
-    Ok(LoopEnd { errors, command, speed: state[3], moved, poles, apart })
+    let (poles, apart) = if settled { closed.poles(&state, sample)? } else { (None, vec![]) };
+    let time = sample as f64 * leaders.period;
+    Ok(LoopEnd { time, errors, command, speed: state[3], moved, poles, apart })
 }
 
 /// How the leaders of a rigid frame move.
@@ -131,13 +138,13 @@ impl ClosedLoop<'_> {
         let mut state = vec![x, y, math::atan2(left, ahead), speed, 0.0, self.leaders.turn_rate];
         state.resize(OWN + count, 0.0);
         let mut memory = vec![0.0; count];
-        self.with_input(&state, |input| self.law.start(input, self.parameters, &mut memory))?;
+        self.with_input(&state, 0, |input| self.law.start(input, self.parameters, &mut memory))?;
         state[OWN..].copy_from_slice(&memory);
         Ok(state)
     }
 
-    /// Asks the law with what it sees in a state.
-    fn with_input<T>(&self, state: &[f64], work: impl FnOnce(&Input<'_>) -> T) -> T {
+    /// Asks the law with what it sees in a state at a sample.
+    fn with_input<T>(&self, state: &[f64], sample: u64, work: impl FnOnce(&Input<'_>) -> T) -> T {
         let own = Pose::new(state[0], state[1], wrap(state[2]));
         let leader = |((pose, motion), wanted): (&(Pose, MotionInput), &[Option<f64>; 2])| {
             let relative = Relative::between(*pose, own);
@@ -154,7 +161,7 @@ impl ClosedLoop<'_> {
         };
         let leaders: Vec<_> = self.motions.iter().zip(&self.leaders.wanted).map(leader).collect();
         work(&Input {
-            time: 0.0,
+            time: sample as f64 * self.leaders.period,
             period: self.leaders.period,
             own_speed: state[3],
             own_acceleration: state[4],
@@ -165,12 +172,13 @@ impl ClosedLoop<'_> {
     }
 
     /// The state a period later, and the command that led there.
-    fn next(&self, state: &[f64]) -> Result<(Vec<f64>, Command), Fault> {
+    fn next(&self, state: &[f64], sample: u64) -> Result<(Vec<f64>, Command), Fault> {
         let mut next = state.to_vec();
         let mut shown = vec![0.0; self.law.declaration().shown.len()];
         let memory = &mut next[OWN..];
-        let command =
-            self.with_input(state, |input| self.law.decide(input, self.parameters, memory, &mut shown))?;
+        let decided = self
+            .with_input(state, sample, |input| self.law.decide(input, self.parameters, memory, &mut shown));
+        let command = decided.map_err(|fault| self.dated(&fault, sample))?;
         let h = self.leaders.period / f64::from(STEPS);
         let mut body = [state[0], state[1], state[2], state[3]];
         let rate = |[x, y, heading, speed]: [f64; 4]| {
@@ -196,6 +204,12 @@ impl ClosedLoop<'_> {
         Ok((next, command))
     }
 
+    /// A fault with the time at which it happened.
+    fn dated(&self, fault: &Fault, sample: u64) -> Fault {
+        let time = sample as f64 * self.leaders.period;
+        Fault { place: fault.place, message: format!("{} (t = {time:.2} s)", fault.message) }
+    }
+
     fn error(&self, leader: usize, state: &[f64]) -> [f64; 2] {
         let own = Pose::new(state[0], state[1], wrap(state[2]));
         let relative = Relative::between(self.motions[leader].0, own);
@@ -207,7 +221,7 @@ impl ClosedLoop<'_> {
     }
 
     /// Poles about a state, and memory apart.
-    fn poles(&self, state: &[f64]) -> Result<(Option<Vec<Pole>>, Vec<usize>), Fault> {
+    fn poles(&self, state: &[f64], sample: u64) -> Result<(Option<Vec<Pole>>, Vec<usize>), Fault> {
         let count = state.len();
         let mut jacobian = DMatrix::zeros(count, count);
         for k in 0..count {
@@ -215,7 +229,7 @@ impl ClosedLoop<'_> {
             let shifted = |by: f64| {
                 let mut state = state.to_vec();
                 state[k] += by;
-                self.next(&state)
+                self.next(&state, sample)
             };
             let ((above, _), (below, _)) = (shifted(size)?, shifted(-size)?);
             for row in 0..count {
@@ -317,6 +331,37 @@ mod tests {
         assert_eq!(end.poles, None);
         let template = LawFile::compile(laws::TEMPLATE).expect("a law");
         let end = close(&template, &[2.0, 0.8], &behind(0.01, 0.0)).expect("no fault");
-        assert_eq!((end.apart, end.poles.map(|poles| poles.len())), (vec![0], Some(4)));
+        assert_eq!(end.poles.map(|poles| poles.len()), Some(4));
+        let counts =
+            LawFile::compile(&format!("memory n = 0\nn = n + 1\n{}", laws::TEMPLATE)).expect("a law");
+        let end = close(&counts, &[2.0, 0.8], &behind(0.01, 0.0)).expect("no fault");
+        assert_eq!((end.apart, end.poles.map(|poles| poles.len())), (vec![0, 1], Some(4)));
+    }
+
+    /// A gain that grows for five seconds is the grown one where the loop is linearised; what breaks off later is told.
+    #[test]
+    fn a_law_that_reads_the_clock_is_followed_for_a_minute() {
+        let law = |gain: &str| {
+            LawFile::compile(
+                &laws::TEMPLATE
+                    .replace("let e =", &format!("let grown = {gain}\nlet e ="))
+                    .replace("k^2", "grown^2"),
+            )
+            .expect("a law")
+        };
+        let late = close(&law("k + 3 [1/s] * min(time / 5 [s], 1)"), &[2.0, 0.8], &behind(0.01, 0.0))
+            .expect("no fault");
+        let grown = close(&law("k + 3 [1/s]"), &[2.0, 0.8], &behind(0.01, 0.0)).expect("no fault");
+        assert!(late.time > 59.0 && grown.time < 59.0, "{} {}", late.time, grown.time);
+        let (late, grown) = (late.poles.expect("it settles"), grown.poles.expect("it settles"));
+        for (late, grown) in late.iter().zip(&grown) {
+            assert!(
+                (late.re - grown.re).abs() < 1e-3 && (late.im - grown.im).abs() < 1e-3,
+                "{late:?} {grown:?}"
+            );
+        }
+        let fault =
+            close(&law("k * sqrt(1 - time / 5 [s])"), &[2.0, 0.8], &behind(0.01, 0.0)).expect_err("a fault");
+        assert!(fault.message.ends_with("(t = 5.01 s)"), "{fault}");
     }
 }

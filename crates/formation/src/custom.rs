@@ -66,6 +66,8 @@ pub struct CustomState {
     failed: Option<Vec<f64>>,
     /// Why it broke off, at the sample at which it did.
     fault: Option<Fault>,
+    /// Whether a law for many followers has met the leader.
+    met: bool,
 }
 
 impl CustomState {
@@ -92,6 +94,12 @@ impl CustomState {
     /// The follower loses sight of its leader, or gets another one: it meets it anew.
     pub(crate) fn forget(&mut self) {
         self.law = None;
+        self.met = false;
+    }
+
+    /// Whether a law for many followers meets the leader now.
+    pub(crate) fn meets(&mut self) -> bool {
+        !std::mem::replace(&mut self.met, true)
     }
 
     /// The command of a control sample; `None` where the law has broken off.

@@ -20,6 +20,8 @@ pub struct EdgeLaw {
     pub law: Law,
     /// The custom law of the follower. With several leaders it is that of its first edge.
     pub custom: Option<Custom>,
+    /// What the [`laws::BatchLaw`] has to know of the leader that decides in the place of both; `None` where none does.
+    pub batch: Option<Knowledge>,
     /// Its observer; used where the law knows distance and bearing only.
     pub observer: Observer,
     /// How it makes an estimate from measurements; `None` where it is told the truth.
@@ -38,7 +40,13 @@ pub struct EdgeLaw {
 impl EdgeLaw {
     /// What the follower's law has to know of its leader.
     pub fn knows(&self) -> Knowledge {
-        self.custom.as_ref().map_or(self.law.knows(), |custom| custom.law().declaration().knows)
+        let custom = || self.custom.as_ref().map_or(self.law.knows(), |c| c.law().declaration().knows);
+        self.batch.unwrap_or_else(custom)
+    }
+
+    /// Whether the follower's law is one of the paper's.
+    pub fn is_built_in(&self) -> bool {
+        self.custom.is_none() && self.batch.is_none()
     }
 
     /// Whether the follower's law takes the rates of distance and bearing from its observer.

@@ -27,12 +27,17 @@ impl EdgeView {
     pub(crate) fn law_input(&self) -> LawInput<'_> {
         LawInput {
             geometry: &self.geometry,
-            error: tracking_error(&self.set_point, &self.output),
+            error: self.error(),
             set_point: &self.set_point,
             rates: self.rates,
             own_speed: self.own_speed,
             leader: &self.leader,
         }
+    }
+
+    /// What the law would make zero, [m, rad].
+    pub(crate) fn error(&self) -> [f64; 2] {
+        tracking_error(&self.set_point, &self.output)
     }
 
     pub(crate) fn leader_input(&self, law: &Law) -> LeaderInput {

@@ -1,5 +1,6 @@
 //! All edges of a formation together: from what every follower sees to what every robot shall do.
 
+use crate::agent_action::AgentAction;
 use crate::column::{cartesian, column};
 use crate::custom::{Custom, CustomState};
 use crate::decision::{Decision, without_leader};
@@ -13,7 +14,7 @@ use crate::observer::Estimate;
 use crate::relative::Geometry;
 use crate::set_point::SetPointTrajectory;
 use crate::standing::StandingInput;
-use laws::{Input, Noise};
+use laws::{BatchInput, BatchLaw, Input, Knowledge, LeaderInput, Noise};
 use std::sync::Arc;
 use vocabulary::{
     Command, Edge, Limits, MotionInput, MotionPhase, Observation, TrackingState, Trajectory, wrap,
@@ -45,6 +46,12 @@ pub struct FormationState {
     pub memories: Vec<EdgeMemory>,
     /// What custom laws carry, per edge; of a follower with several leaders on its first edge.
     pub customs: Vec<CustomState>,
+    /// Per robot: what a law for many followers asked for last; `None` where none did.
+    batch: Vec<Option<Command>>,
+    /// Per robot: what somebody outside decides for it at the next decision.
+    actions: Vec<Option<AgentAction>>,
+    /// Whether [`Formation::prepare`] has carried memories on to the sample that is decided next.
+    prepared: bool,
     /// Per robot: what it is told; for a lead robot its prescribed motion.
     pub commands: Vec<Command>,
     drives: Vec<MotionInput>,
@@ -173,6 +180,9 @@ impl Formation {
             decisions: vec![Decision::default(); self.edges.len()],
             memories: vec![EdgeMemory::default(); self.edges.len()],
             customs: vec![CustomState::default(); self.edges.len()],
+            batch: vec![None; robots],
+            actions: vec![None; robots],
+            prepared: false,
             commands: vec![Command::default(); robots],
             drives: vec![MotionInput::default(); robots],
             turn_rates: [None, None],
@@ -193,11 +203,77 @@ impl Formation {
         state: &mut FormationState,
         filter: &mut dyn FnMut(usize, Command) -> Command,
     ) {
-        self.remember(time, observations, state);
-        state.differentiate_turn_rates(self.period);
+        self.begin(time, observations, state);
         let mut rates = self.continuous.then(|| vec![vec![]; self.edges.len()]);
         self.evaluate_through(time, observations, state, filter, rates.as_deref_mut());
         state.remember_turn_rates();
+    }
+
+    /// As [`Formation::decide_through`], where `batch` decides for the followers whose [`EdgeLaw::batch`] says so.
+    ///
+    /// # Errors
+    /// [`laws::Fault`] where it gives no commands; `state` is then of no use.
+    pub fn decide_with(
+        &self,
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        batch: &mut dyn BatchLaw,
+        filter: &mut dyn FnMut(usize, Command) -> Command,
+    ) -> Result<(), laws::Fault> {
+        self.begin(time, observations, state);
+        self.lead(time, state, filter);
+        let stages = match batch.knows() {
+            Knowledge::Output => vec![self.graph.evaluation_order().to_vec()],
+            Knowledge::Rates | Knowledge::Motion => self.graph.depths(),
+        };
+        for stage in &stages {
+            self.ask_batch(batch, stage, time, observations, state)?;
+            self.follow(stage, time, observations, state, filter, None);
+        }
+        state.remember_turn_rates();
+        Ok(())
+    }
+
+    fn begin(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
+        if !std::mem::take(&mut state.prepared) {
+            self.remember(time, observations, state);
+            state.differentiate_turn_rates(self.period);
+        }
+    }
+
+    /// Carries on to this sample what followers remember, so that [`Formation::told`] tells of it; the decision of the same
+    /// sample, which comes next, does not do it again.
+    pub fn prepare(&self, time: f64, observations: &[Observation], state: &mut FormationState) {
+        self.begin(time, observations, state);
+        state.prepared = true;
+    }
+
+    /// Hands to `read` what the law of edge number `index` is told at a sample that is prepared, and the tracking error, [m, rad],
+    /// as the follower knows it. Of what leaders do within the sample nothing is known yet: their motion is that of the sample
+    /// before.
+    pub fn told<R>(
+        &self,
+        index: usize,
+        time: f64,
+        seen: &Observation,
+        state: &FormationState,
+        read: impl FnOnce(&Input<'_>, [f64; 2]) -> R,
+    ) -> R {
+        let view = self.view(index, time, seen, state);
+        let leaders = [view.leader_input(&self.edges[index].law)];
+        read(&self.input(index, time, view.own_speed, &leaders, state), view.error())
+    }
+
+    /// True tracking error of edge number `index` at a sample that is prepared, [m, rad]; `truth` is the true relative position.
+    pub fn true_error(
+        &self,
+        index: usize,
+        time: f64,
+        truth: &Observation,
+        state: &FormationState,
+    ) -> [f64; 2] {
+        self.view(index, time, truth, state).error()
     }
 
     /// Carries what followers remember of their leaders on to this sample.
@@ -258,8 +334,14 @@ impl Formation {
         observations: &[Observation],
         state: &mut FormationState,
         filter: &mut dyn FnMut(usize, Command) -> Command,
-        mut rates: Option<&mut [Vec<f64>]>,
+        rates: Option<&mut [Vec<f64>]>,
     ) {
+        self.lead(time, state, filter);
+        self.follow(self.graph.evaluation_order(), time, observations, state, filter, rates);
+    }
+
+    /// Those who follow nobody take their prescribed motion.
+    fn lead(&self, time: f64, state: &mut FormationState, filter: &mut dyn FnMut(usize, Command) -> Command) {
         for (robot, trajectory) in &self.leads {
             let mut drive = trajectory.at(time);
             let prescribed = Command { acceleration: drive.acceleration, turn_rate: drive.turn_rate };
@@ -272,7 +354,19 @@ impl Formation {
             state.drives[*robot] = drive;
             state.commands[*robot] = told;
         }
-        for &index in self.graph.evaluation_order() {
+    }
+
+    /// The followers of the edges `order` decide, one after the other.
+    fn follow(
+        &self,
+        order: &[usize],
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+        filter: &mut dyn FnMut(usize, Command) -> Command,
+        mut rates: Option<&mut [Vec<f64>]>,
+    ) {
+        for &index in order {
             let follower = self.edges()[index].follower;
             let own = self.graph.edges_of(follower);
             // A follower with several leaders decides once.
@@ -327,9 +421,16 @@ impl Formation {
             &several
         };
         let (parameters, seen) = (&self.edges[first], &observations[first]);
-        let asked = match &parameters.custom {
+        let follower = self.edges()[first].follower;
+        let action = state.actions[follower].take();
+        let by_law = || match &parameters.custom {
+            _ if parameters.batch.is_some() => state.batch[follower],
             None => Some(parameters.law.command(&views[0].law_input())),
             Some(custom) => self.ask(custom, first, time, views, state, rates),
+        };
+        let asked = match action {
+            None => by_law(),
+            Some(action) => action.applied_to(by_law),
         };
         // A law that has broken off leaves its follower as if it had lost its leader.
         let mut asked = asked.unwrap_or_else(|| without_leader(true, seen.own_speed, limits));
@@ -401,26 +502,72 @@ impl Formation {
             several = views.iter().map(|view| view.leader_input(law)).collect::<Vec<_>>();
             &several
         };
-        let follower = self.edges()[first].follower;
-        let last = state.decisions[first].applied;
-        let input = Input {
-            time,
-            period: self.period,
-            own_speed: views[0].own_speed,
-            own_acceleration: last.acceleration,
-            own_turn_rate: last.turn_rate,
-            leaders,
-            noise: Noise {
-                seed: self.seed,
-                robot: follower as u64,
-                sample: (time / self.period).round() as u64,
-            },
-        };
+        let input = self.input(first, time, views[0].own_speed, leaders, state);
         let law = &mut state.customs[first];
         match rates {
             None => law.decide(custom, &input),
             Some(rates) => law.derive(custom, &input, rates),
         }
+    }
+
+    /// What the law of the follower of edge number `first` is told.
+    fn input<'a>(
+        &self,
+        first: usize,
+        time: f64,
+        own_speed: f64,
+        leaders: &'a [LeaderInput],
+        state: &FormationState,
+    ) -> Input<'a> {
+        let last = state.decisions[first].applied;
+        Input {
+            time,
+            period: self.period,
+            own_speed,
+            own_acceleration: last.acceleration,
+            own_turn_rate: last.turn_rate,
+            leaders,
+            noise: Noise {
+                seed: self.seed,
+                robot: self.edges()[first].follower as u64,
+                sample: (time / self.period).round() as u64,
+            },
+        }
+    }
+
+    /// Asks `batch` for the commands of its followers among those of the edges `stage`; those who do not know where their
+    /// leader is are left out.
+    fn ask_batch(
+        &self,
+        batch: &mut dyn BatchLaw,
+        stage: &[usize],
+        time: f64,
+        observations: &[Observation],
+        state: &mut FormationState,
+    ) -> Result<(), laws::Fault> {
+        let asked = |edge: &usize| self.edges[*edge].batch.is_some() && !unseen(&observations[*edge]);
+        let mut edges: Vec<usize> = stage.iter().copied().filter(asked).collect();
+        edges.sort_by_key(|edge| self.edges()[*edge].follower);
+        let view = |edge: &usize| self.view(*edge, time, &observations[*edge], state);
+        let views: Vec<EdgeView> = edges.iter().map(view).collect();
+        let leader = |(edge, view): (&usize, &EdgeView)| view.leader_input(&self.edges[*edge].law);
+        let leaders: Vec<LeaderInput> = edges.iter().zip(&views).map(leader).collect();
+        let mut inputs = Vec::with_capacity(edges.len());
+        for ((edge, view), leader) in edges.iter().zip(&views).zip(leaders.chunks(1)) {
+            inputs.push(BatchInput {
+                robot: self.edges()[*edge].follower,
+                meets: state.customs[*edge].meets(),
+                input: self.input(*edge, time, view.own_speed, leader, state),
+            });
+        }
+        if inputs.is_empty() {
+            return Ok(());
+        }
+        let commands = batch.decide(&inputs)?;
+        for (input, command) in inputs.iter().zip(commands) {
+            state.batch[input.robot] = Some(command);
+        }
+        Ok(())
     }
 
     /// A decision with what belongs to one edge.
@@ -472,6 +619,11 @@ impl Formation {
 const DIVIDES_BY: f64 = 0.01;
 
 impl FormationState {
+    /// Somebody outside decides for a robot at the next decision; a robot that has no law then ignores it.
+    pub fn set_action(&mut self, robot: usize, action: AgentAction) {
+        self.actions[robot] = Some(action);
+    }
+
     /// The follower of edge number `index` has another leader from now on, of whose relative position and motion it
     /// believes `estimate`.
     pub fn change_leader(&mut self, index: usize, law: &Law, estimate: Estimate, hand_over: HandOver) {

@@ -85,6 +85,20 @@ impl Graph {
         Ok(Self { robots: names.len(), edges, edges_of, evaluation_order })
     }
 
+    /// The edges in the order in which they are evaluated, by the depth of their followers: those of one depth do not lead each
+    /// other.
+    pub fn depths(&self) -> Vec<Vec<usize>> {
+        let mut depths = vec![0; self.robots];
+        let mut stages: Vec<Vec<usize>> = vec![];
+        for own in self.evaluation_order.chunk_by(|a, b| self.edges[*a].follower == self.edges[*b].follower) {
+            let depth = own.iter().map(|edge| depths[self.edges[*edge].leader]).max().unwrap_or(0);
+            depths[self.edges[own[0]].follower] = depth + 1;
+            stages.resize_with(stages.len().max(depth + 1), Vec::new);
+            stages[depth].extend(own);
+        }
+        stages
+    }
+
     /// Adds an edge that is not in force yet, for a robot that leads now and may follow later.
     pub fn add_waiting(&mut self, edge: Edge) {
         self.edges.push(edge);

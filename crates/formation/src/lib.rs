@@ -7,6 +7,7 @@
 //! Read in the order of the data: [`graph`], [`relative`], [`set_point`], [`lead`], [`law`], [`observer`], [`tracker`],
 //! and [`formation`], which puts them together.
 
+mod agent_action;
 pub mod assignment;
 pub mod certificate;
 pub mod closed_loop;
@@ -33,6 +34,7 @@ pub mod set_point;
 mod standing;
 pub mod tracker;
 
+pub use agent_action::AgentAction;
 pub use custom::{Custom, CustomState};
 pub use decision::Decision;
 pub use edge_law::EdgeLaw;

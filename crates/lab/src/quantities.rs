@@ -111,7 +111,9 @@ pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<
             all.push(QuantityCurve { branch, robot: None, points });
             continue;
         }
-        let records = history.between(branch, span, most);
+        // Commands have spikes of a sample or two, which no curve may leave out.
+        let spiky = matches!(quantity, PlotQuantity::Acceleration | PlotQuantity::TurnRate);
+        let records = history.between(branch, span, if spiky { usize::MAX } else { most });
         if let Some(value) = filtered(quantity) {
             all.extend(filter_curves(branch, &records, value));
             continue;
@@ -124,6 +126,7 @@ pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<
             };
             let points = certified(quantity, &records, edge, *ends, follow)
                 .unwrap_or_else(|| records.iter().filter_map(point).collect());
+            let points = if spiky { with_extremes(&points, most) } else { points };
             all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
         }
         if quantity == PlotQuantity::Speed {
@@ -182,7 +185,7 @@ pub fn signal_curves(app_state: &AppState, name: &str, most: usize) -> Vec<Quant
     let Some(history) = &app_state.history else { return Vec::new() };
     let mut all = Vec::new();
     for (branch, span) in branches(app_state, history) {
-        let records = history.between(branch, span, most);
+        let records = history.between(branch, span, usize::MAX);
         let robots: BTreeSet<usize> =
             records.iter().flat_map(|record| &record.laws).map(|law| law.robot).collect();
         for robot in robots {
@@ -191,10 +194,34 @@ pub fn signal_curves(app_state: &AppState, name: &str, most: usize) -> Vec<Quant
                 law.value(name).filter(|value| value.is_finite()).map(|value| [record.snapshot.time, value])
             };
             let points: Vec<_> = records.iter().map(point).collect();
-            all.extend(stretches(branch, robot, &points));
+            let share = |curve: QuantityCurve| {
+                let most = (most * curve.points.len()).div_ceil(points.len().max(1));
+                QuantityCurve { points: with_extremes(&curve.points, most), ..curve }
+            };
+            all.extend(stretches(branch, robot, &points).map(share));
         }
     }
     all
+}
+
+/// About `most` of the points of a curve, the least and the largest value of every stretch among them.
+fn with_extremes(points: &[[f64; 2]], most: usize) -> Vec<[f64; 2]> {
+    // Whole multiples of the step, so that curves do not jitter as they grow.
+    let step = (2 * points.len()).div_ceil(most.max(2)).next_power_of_two();
+    if step <= 2 {
+        return points.to_vec();
+    }
+    let ends = |stretch: &[[f64; 2]]| {
+        let by = |a: &&[f64; 2], b: &&[f64; 2]| a[1].total_cmp(&b[1]);
+        let mut ends = [stretch.iter().min_by(by), stretch.iter().max_by(by)];
+        ends.sort_by(|a, b| a.map_or(0.0, |p| p[0]).total_cmp(&b.map_or(0.0, |p| p[0])));
+        ends.into_iter().flatten().copied().collect::<Vec<_>>()
+    };
+    let mut kept: Vec<_> = points.chunks(step).flat_map(ends).collect();
+    kept.dedup();
+    // The curve reaches to where it is now.
+    kept.extend(points.last().filter(|last| kept.last() != Some(last)));
+    kept
 }
 
 /// Branches, the shown one last, each with the span of time that it does not share with the one it left, s.
@@ -379,4 +406,22 @@ pub fn svg(app_state: &AppState) -> String {
         ..Figure::default()
     }
     .svg()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thinned_curve_keeps_its_spikes_and_its_end() {
+        let wave = |k: usize| [0.01 * k as f64, if k == 3 { 11.1 } else { (k % 7) as f64 }];
+        for count in [0, 1, 150, 1500, 7900, 20_001] {
+            let points: Vec<[f64; 2]> = (0..count).map(wave).collect();
+            let kept = with_extremes(&points, 400);
+            assert!(kept.len() <= 401, "{count}: {}", kept.len());
+            assert!(count <= 3 || kept.contains(&wave(3)), "{count}");
+            assert_eq!(kept.last(), points.last());
+            assert!(kept.windows(2).all(|pair| pair[0][0] < pair[1][0]), "{count}: in the order of time");
+        }
+    }
 }

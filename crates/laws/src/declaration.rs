@@ -52,6 +52,10 @@ pub struct Parameter {
     pub symbol: String,
     /// Its unit.
     pub unit: Unit,
+    /// Its unit as it is declared, such as "deg", in which all its values are given; empty for a number.
+    pub unit_name: String,
+    /// What one of that unit is in m, s and rad.
+    pub unit_size: f64,
     /// What it is where nobody sets it.
     pub default: f64,
     /// The least and the largest value.
@@ -60,6 +64,18 @@ pub struct Parameter {
     pub scale: Scale,
     /// One line that says what it does; empty where the law has none.
     pub help: String,
+}
+
+impl Parameter {
+    /// A value as the law takes it, in m, s and rad.
+    pub fn as_told(&self, value: f64) -> f64 {
+        value * self.unit_size
+    }
+
+    /// Its unit as it stands behind a number: with a space before it, or nothing.
+    pub fn behind(&self) -> String {
+        if self.unit_name.is_empty() { String::new() } else { format!(" {}", self.unit_name) }
+    }
 }
 
 /// How a slider divides a range.

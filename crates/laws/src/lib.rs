@@ -4,8 +4,11 @@
 //! and what it has to know of them. It is told an [`Input`] and decides a [`vocabulary::Command`], dv/dt and ω. It has no
 //! clock, no files, no other robots, and no randomness but [`Noise`], so a run replays bit for bit.
 //!
+//! A [`BatchLaw`] decides for many followers at once.
+//!
 //! A [`LawFile`] is a custom law that is written as text, in a language of its own: `docs/law-files.md` is its reference.
 
+mod batch_law;
 mod custom_law;
 mod declaration;
 mod input;
@@ -15,6 +18,7 @@ mod noise;
 mod shipped;
 mod unit;
 
+pub use batch_law::{BatchInput, BatchLaw};
 pub use custom_law::{CustomLaw, Fault, Place};
 pub use declaration::{Declaration, Knowledge, Parameter, Quantity, Scale};
 pub use input::{INPUTS, Input, InputKind, LEADERS_MAX, LeaderInput};

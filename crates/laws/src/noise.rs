@@ -17,9 +17,13 @@ impl Noise {
     /// Number `index` of this robot and sample: normally distributed, mean 0, variance 1.
     pub fn normal(&self, index: u64) -> f64 {
         // Box and Muller, from two counted draws; the first is never 0.
-        let [a, b] = [0, 1].map(|half| self.bits(index.wrapping_mul(2).wrapping_add(half)));
-        let even = |bits: u64| ((bits >> 11) as f64 + 0.5) / (1_u64 << 53) as f64;
-        (-2.0 * math::ln(even(a))).sqrt() * math::cos(2.0 * std::f64::consts::PI * even(b))
+        let [a, b] = [0, 1].map(|half| self.uniform(index.wrapping_mul(2).wrapping_add(half)));
+        (-2.0 * math::ln(a)).sqrt() * math::cos(2.0 * std::f64::consts::PI * b)
+    }
+
+    /// Number `index` of this robot and sample: uniformly distributed, above 0 and at most 1.
+    pub fn uniform(&self, index: u64) -> f64 {
+        ((self.bits(index) >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
     /// 64 random bits.

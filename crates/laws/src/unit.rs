@@ -82,6 +82,11 @@ impl Unit {
         fits.then_some(Self { metre: metre as i16, second: second as i16, radian })
     }
 
+    /// What it is called where one that is `size` of it is `written`: by its own name where they are the same.
+    pub(crate) fn name_of(self, size: f64, written: &str) -> String {
+        if size == 1.0 { self.to_string() } else { written.trim().to_owned() }
+    }
+
     /// It as it stands behind a number: with a space before it, or nothing.
     pub fn behind(self) -> String {
         let unit = self.to_string();
@@ -110,7 +115,7 @@ impl Unit {
 const BEYOND: &str = "the powers of this unit are too large";
 
 /// The names of units, what they are, and what one of them is in m, s and rad.
-const NAMES: [(&str, Unit, f64); 10] = [
+const NAMES: [(&str, Unit, f64); 11] = [
     ("m", Unit::new(1, 0), 1.0),
     ("s", Unit::new(0, 1), 1.0),
     ("rad", Unit::ANGLE, 1.0),
@@ -119,6 +124,7 @@ const NAMES: [(&str, Unit, f64); 10] = [
     ("km", Unit::new(1, 0), 1000.0),
     ("cm", Unit::new(1, 0), 0.01),
     ("mm", Unit::new(1, 0), 0.001),
+    ("h", Unit::new(0, 1), 3600.0),
     ("min", Unit::new(0, 1), 60.0),
     ("ms", Unit::new(0, 1), 0.001),
 ];
@@ -311,6 +317,7 @@ mod tests {
             ("1/(m·s^10)", "1/(m·s^10) 1"),
             ("km/min", "m/s 16.666666666666668"),
             ("ms", "s 0.001"),
+            ("km/h", "m/s 0.2777777777777778"),
             ("deg", "rad 0.017453292519943295"),
             ("°", "rad 0.017453292519943295"),
         ] {
@@ -339,7 +346,7 @@ mod tests {
 
     #[test]
     fn what_is_no_unit_is_refused_in_words() {
-        let names = "there are m, s, rad, deg, °, km, cm, mm, min, ms, and `-` for a number";
+        let names = "there are m, s, rad, deg, °, km, cm, mm, h, min, ms, and `-` for a number";
         for (text, message) in [
             ("", format!("a unit is missing; {names}")),
             ("m/", format!("a unit is missing; {names}")),

@@ -15,10 +15,12 @@ mod columns;
 mod error;
 pub mod log;
 mod manifest;
+mod numbers;
 mod run;
 mod table;
 
 pub use error::Error;
 pub use manifest::{Manifest, Status};
-pub use run::{Finished, Recorder, RunOptions};
-pub use table::{Column, TableKind, read_table};
+pub use numbers::{edge_columns, edge_numbers, robot_columns, robot_numbers};
+pub use run::{Finished, Recorder, RunOptions, metrics_text};
+pub use table::{Column, TableBuilder, TableKind, read_table};

@@ -8,8 +8,7 @@ use output::{Claim, write_whole};
 use serde::Serialize;
 use std::fs;
 use std::path::{Path, PathBuf};
-use vocabulary::Judging;
-use vocabulary::{FleetInfo, StepRecord};
+use vocabulary::{Contact, FleetInfo, Judging, StepRecord};
 
 /// What a recorder has to know before the first moment.
 #[derive(Debug, Clone)]
@@ -68,6 +67,14 @@ struct MetricsFile<'a> {
     /// What the scene expects, where it was checked.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     expectations: &'a [JudgedExpectation],
+}
+
+/// The text of `metrics.json`.
+///
+/// # Errors
+/// What the library says where it cannot write a number.
+pub fn metrics_text(metrics: &Metrics, expectations: &[JudgedExpectation]) -> Result<String, String> {
+    json_text(&MetricsFile { metrics, expectations }).map_err(|error| error.to_string())
 }
 
 /// What a run folder may contain that we wrote ourselves and may replace.
@@ -139,6 +146,11 @@ impl Recorder {
         self.digest.text()
     }
 
+    /// The contacts that are open, as if they ended now.
+    pub fn closed_contacts(&self) -> Vec<Contact> {
+        self.metrics.close_contacts()
+    }
+
     /// Closes the tables and writes metrics and manifest.
     ///
     /// # Errors
@@ -156,7 +168,7 @@ impl Recorder {
         certificates: Vec<CertificateMetrics>,
         expectations: &[JudgedExpectation],
     ) -> Finished {
-        let last = StepRecord { contacts: self.metrics.close_contacts(), ..StepRecord::default() };
+        let last = StepRecord { contacts: self.closed_contacts(), ..StepRecord::default() };
         let metrics = Metrics { certificates, ..self.metrics.finish() };
         let digest = self.digest.text();
         self.manifest.status = status;
@@ -193,9 +205,14 @@ impl Recorder {
 }
 
 fn write_json<T: serde::Serialize>(path: &Path, value: &T) -> Result<(), Error> {
-    let mut text = serde_json::to_string_pretty(value).map_err(Error::table(path))?;
-    text.push('\n');
+    let text = json_text(value).map_err(Error::table(path))?;
     Ok(write_whole(path, text.as_bytes())?)
+}
+
+fn json_text<T: Serialize>(value: &T) -> serde_json::Result<String> {
+    let mut text = serde_json::to_string_pretty(value)?;
+    text.push('\n');
+    Ok(text)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@
 use crate::Error;
 use crate::columns::{self, Cell, Row};
 use arrow_array::{ArrayRef, BooleanArray, Float64Array, RecordBatch, StringArray};
-use arrow_schema::{DataType, Field, Schema};
+use arrow_schema::{ArrowError, DataType, Field, Schema};
 use parquet::arrow::ArrowWriter;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::basic::{Compression, ZstdLevel};
@@ -122,11 +122,53 @@ impl TableKind {
     }
 }
 
+/// Gathers the rows of one table in memory.
+pub struct TableBuilder {
+    kind: TableKind,
+    columns: Vec<(&'static str, Column)>,
+}
+
+impl TableBuilder {
+    /// A table without rows.
+    pub fn new(kind: TableKind) -> Self {
+        Self { kind, columns: columns::empty(kind) }
+    }
+
+    /// Adds the rows of a moment.
+    pub fn push(&mut self, fleet: &FleetInfo, record: &StepRecord) {
+        let (columns, mut next) = (&mut self.columns, 0);
+        self.kind.rows(fleet, record, &mut |_, cell| {
+            match (&mut columns[next].1, cell) {
+                (Column::Text(values), Cell::Text(text)) => values.push(text.to_owned()),
+                (Column::Number(values), Cell::Number(number)) => values.push(number),
+                (Column::Flag(values), Cell::Flag(flag)) => values.push(flag),
+                _ => {}
+            }
+            next = (next + 1) % columns.len();
+        });
+    }
+
+    /// Takes the rows out; the table is empty then.
+    ///
+    /// # Errors
+    /// [`ArrowError`] where the columns do not make a batch.
+    pub fn take(&mut self) -> Result<RecordBatch, ArrowError> {
+        let values = self.columns.iter_mut().map(|(_, column)| column.take()).collect();
+        RecordBatch::try_new(schema(self.kind), values)
+    }
+
+    /// The rows as text, cell by cell.
+    fn texts(&self) -> impl Iterator<Item = impl Iterator<Item = String>> {
+        let rows = self.columns.first().map_or(0, |(_, column)| column.len());
+        (0..rows).map(|row| self.columns.iter().map(move |(_, column)| column.text(row)))
+    }
+}
+
 /// Writes one table.
 pub(crate) struct TableWriter {
     kind: TableKind,
     folder: PathBuf,
-    columns: Vec<(&'static str, Column)>,
+    table: TableBuilder,
     samples: usize,
     parts: usize,
     csv: Option<csv::Writer<File>>,
@@ -137,7 +179,7 @@ impl TableWriter {
         let mut writer = Self {
             kind,
             folder: folder.to_owned(),
-            columns: columns::empty(kind),
+            table: TableBuilder::new(kind),
             samples: 0,
             parts: 0,
             csv: None,
@@ -146,7 +188,8 @@ impl TableWriter {
         if csv {
             let path = writer.path("csv");
             let mut file = csv::Writer::from_path(&path).map_err(Error::table(&path))?;
-            file.write_record(writer.columns.iter().map(|(name, _)| name)).map_err(Error::table(&path))?;
+            file.write_record(writer.table.columns.iter().map(|(name, _)| name))
+                .map_err(Error::table(&path))?;
             writer.csv = Some(file);
         }
         Ok(writer)
@@ -165,16 +208,7 @@ impl TableWriter {
     }
 
     pub(crate) fn push(&mut self, fleet: &FleetInfo, record: &StepRecord) -> Result<(), Error> {
-        let (columns, mut next) = (&mut self.columns, 0);
-        self.kind.rows(fleet, record, &mut |_, cell| {
-            match (&mut columns[next].1, cell) {
-                (Column::Text(values), Cell::Text(text)) => values.push(text.to_owned()),
-                (Column::Number(values), Cell::Number(number)) => values.push(number),
-                (Column::Flag(values), Cell::Flag(flag)) => values.push(flag),
-                _ => {}
-            }
-            next = (next + 1) % columns.len();
-        });
+        self.table.push(fleet, record);
         self.samples += 1;
         if self.samples == SAMPLES_PER_PART { self.flush() } else { Ok(()) }
     }
@@ -187,8 +221,7 @@ impl TableWriter {
         self.flush_csv()?;
         let path = self.part(self.parts);
         let draft = path.with_extension("tmp");
-        let values = self.columns.iter_mut().map(|(_, column)| column.take()).collect();
-        let batch = RecordBatch::try_new(schema(self.kind), values).map_err(Error::table(&path))?;
+        let batch = self.table.take().map_err(Error::table(&path))?;
         write_parquet(&draft, &path, &batch.schema(), |writer| {
             writer.write(&batch).map_err(Error::table(&path))
         })?;
@@ -200,10 +233,8 @@ impl TableWriter {
     fn flush_csv(&mut self) -> Result<(), Error> {
         let path = self.path("csv");
         let Some(file) = &mut self.csv else { return Ok(()) };
-        let rows = self.columns.first().map_or(0, |(_, column)| column.len());
-        for row in 0..rows {
-            file.write_record(self.columns.iter().map(|(_, column)| column.text(row)))
-                .map_err(Error::table(&path))?;
+        for row in self.table.texts() {
+            file.write_record(row).map_err(Error::table(&path))?;
         }
         file.flush().map_err(Error::io("write", &path))
     }

@@ -1,5 +1,6 @@
 //! What is wrong with a scene, and where.
 
+use crate::text::words::suggested;
 use std::{fmt, path::Path};
 
 /// One thing that is wrong.
@@ -19,6 +20,13 @@ pub struct Diagnostic {
     pub message: String,
 }
 
+impl Diagnostic {
+    /// The word that may have been meant, if the message names one.
+    pub fn suggestion(&self) -> Option<&str> {
+        suggested(&self.message)
+    }
+}
+
 /// Everything that is wrong, in the order of the text; never empty.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostics(pub(crate) Vec<Diagnostic>);
@@ -27,6 +35,11 @@ impl Diagnostics {
     /// All of them.
     pub fn all(&self) -> &[Diagnostic] {
         &self.0
+    }
+
+    /// One thing that is wrong with a whole file.
+    pub fn of_file(path: &Path, message: &str) -> Self {
+        Self::whole_file(path, [message.to_owned()])
     }
 
     pub(crate) fn whole_file(path: &Path, messages: impl IntoIterator<Item = String>) -> Self {

@@ -147,6 +147,9 @@ fn open(name: &str, path: &Path, reporter: &mut Reporter) -> Result<Option<Writt
     if is_module(&bytes) {
         return of_module(source, bytes).map(Some);
     }
+    if path.extension().is_some_and(|extension| extension == "wasm") {
+        return Err(vec!["is no WebAssembly module: it does not begin with the bytes of one".to_owned()]);
+    }
     let text = text_of(bytes).map_err(|fault| vec![fault])?;
     Ok(compiled(source, path.display().to_string(), &text, reporter))
 }
@@ -214,7 +217,7 @@ pub(crate) fn faults(values: &BTreeMap<String, f64>, law: &WrittenLaw) -> Vec<St
             return Some(format!("{} has no parameter `{name}`{hint}", law.name()));
         };
         let [low, high] = parameter.range;
-        let unit = parameter.unit.behind();
+        let unit = parameter.behind();
         (!(low..=high).contains(value)).then(|| {
             format!("`{name}` must be from {low} to {high}{unit}, as {} says, not {value}", law.name())
         })

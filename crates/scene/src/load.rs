@@ -7,7 +7,7 @@ use crate::{
     files::read_text,
     resolve::resolve,
     shipped::{Shipped, nearest_shipped, shipped},
-    text::{Form, Node, Reporter, table},
+    text::{Form, Node, Reporter, table, words::MEANT},
 };
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -57,7 +57,7 @@ fn named(path: &Path) -> Option<&'static Shipped> {
 fn suggestion(path: &Path) -> String {
     let stem = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     match nearest_shipped(&stem).filter(|_| !path.exists()) {
-        Some(name) => format!(" (did you mean `{name}`, which comes with the program?)"),
+        Some(name) => format!(" ({MEANT}{name}`, which comes with the program?)"),
         None => String::new(),
     }
 }

@@ -3,26 +3,23 @@
 use crate::types::{Follow, Law, Robot, Scene, VehicleKind, WrittenLaw};
 use laws::InputKind;
 
-impl Scene {
-    /// What followers are given that their custom law does not use, in words: gains of the built-in laws, and set points
-    /// that the law does not read.
-    pub fn unused(&self) -> Vec<String> {
-        let mut words: Vec<String> = vec![];
-        for Robot { name, vehicle, role, .. } in &self.robots {
-            let Some((follow, law)) = role.follow().and_then(|follow| Some((follow, follow.law.custom()?)))
-            else {
-                continue;
-            };
-            let gains = unused_gains(&follow.law, vehicle.kind, law);
-            for word in gains.into_iter().chain(unread_set_points(name, follow, law)) {
-                // Followers of one kind are told once.
-                if !words.contains(&word) {
-                    words.push(word);
-                }
+/// What followers are given that their custom law does not use, in words.
+pub(crate) fn unused(scene: &Scene) -> Vec<String> {
+    let mut words: Vec<String> = vec![];
+    for Robot { name, vehicle, role, .. } in &scene.robots {
+        let Some((follow, law)) = role.follow().and_then(|follow| Some((follow, follow.law.custom()?)))
+        else {
+            continue;
+        };
+        let gains = unused_gains(&follow.law, vehicle.kind, law);
+        for word in gains.into_iter().chain(unread_set_points(name, follow, law)) {
+            // Followers of one kind are told once.
+            if !words.contains(&word) {
+                words.push(word);
             }
         }
-        words
     }
+    words
 }
 
 /// Gains of the built-in laws that differ from those that fit the vehicle, so somebody has set them.

@@ -224,3 +224,15 @@ fn what_a_custom_law_does_not_use_is_told_once() {
     assert_eq!(told.len(), 1 + 2 * 2, "{told:?}");
     assert_eq!(parse("[law]\nk = [3.0, 3.0]\n", &[]).expect("a scene").unused(), [""; 0]);
 }
+
+#[test]
+fn parameters_are_set_in_the_unit_that_they_are_declared_in() {
+    let law_text =
+        "parameter gap = 50 [mm] in 0 .. 2000\nparameter off = 10 [deg] in -90 .. 90\ncommand = 0, 0\n";
+    let scene = parse(&table(law_text), &["law.parameters={ gap = 40, off = 90 }"]).expect("a scene");
+    let own = law(&scene, "follower-1");
+    assert_eq!(own.values(), [40.0, 90.0]);
+    assert_eq!(own.told_values(), [0.04, std::f64::consts::FRAC_PI_2]);
+    let fault = parse(&table(law_text), &["law.parameters.off=91"]).expect_err("out of range");
+    assert!(fault.contains("`off` must be from -90 to 90 deg, as law.text says, not 91"), "{fault}");
+}

@@ -172,7 +172,8 @@ pub fn edge_law(follow: &Follow, leader: &Leader, now: [f64; 2]) -> EdgeLaw {
                 }
             },
         },
-        custom: law.custom().map(|custom| Custom::new(custom.law(), law.values())),
+        custom: law.custom().map(|custom| Custom::new(custom.law(), law.told_values())),
+        batch: None,
         observer,
         tracker: tracker_parameters(follow, observer),
         set_point: SetPointTrajectory {

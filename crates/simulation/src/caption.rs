@@ -11,8 +11,11 @@ pub fn caption(scene: &Scene) -> String {
     }
     let mut parts = vec![common(&all, law).unwrap_or_else(|| "Mixed laws".to_owned())];
     // Where laws are mixed, their parameters would be anybody's.
-    if let Some(Some(_)) = common(&all, |follow| follow.law.custom().cloned()) {
+    if let Some(Some(custom)) = common(&all, |follow| follow.law.custom().cloned()) {
         parts.extend(parameters(all[0], &all));
+        if custom.declaration().parameters.len() > PARAMETERS {
+            parts.push("…".to_owned());
+        }
     }
     let built_in: Vec<_> = all.iter().copied().filter(|follow| follow.law.custom().is_none()).collect();
     if !built_in.is_empty() {
@@ -97,7 +100,7 @@ fn parameters<'a>(law: &'a Follow, all: &'a [&Follow]) -> impl Iterator<Item = S
     let declared = law.law.custom().map_or(&[][..], |law| &law.declaration().parameters);
     declared.iter().take(PARAMETERS).enumerate().map(|(index, parameter)| {
         let value = range(all, |follow| [follow.law.values()[index]; 2]);
-        format!("{} {value}{}", parameter.symbol, parameter.unit.behind())
+        format!("{} {value}{}", parameter.symbol, parameter.behind())
     })
 }
 

@@ -1,4 +1,5 @@
-//! What ends a run before its time: pictures that cannot be taken, or a number that is not finite.
+//! What ends a run before its time: pictures that cannot be taken, a law that gives no commands, or a number that is not
+//! finite.
 
 use std::fmt;
 use thiserror::Error;
@@ -16,6 +17,9 @@ pub enum Fault {
     /// A quantity is not a finite number.
     #[error(transparent)]
     NotFinite(#[from] NotFinite),
+    /// A law for many followers gave no commands.
+    #[error("{0}")]
+    Law(String),
 }
 
 /// A quantity that is not a finite number. Its record is in no table, log or picture.

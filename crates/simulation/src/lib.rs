@@ -3,6 +3,7 @@
 //! [`build`] turns a checked scene into a [`Setup`]; [`Simulation`] runs it, one [`StepRecord`](vocabulary::StepRecord) per
 //! control sample.
 
+mod batch;
 mod build;
 mod caption;
 mod chase;
@@ -25,6 +26,7 @@ mod stage;
 mod standstill;
 mod step;
 
+pub use batch::BatchError;
 pub use build::{build, edge_law};
 pub use caption::{caption, short};
 pub use drivable::Undrivable;

@@ -83,7 +83,8 @@ fn record_laws(run: &mut Simulation) {
     let mut told = 0;
     for (index, law) in run.formation.laws().iter().enumerate() {
         let follower = graph.edges()[index].follower;
-        let Some(custom) = law.custom.as_ref().filter(|_| graph.edge_of(follower) == Some(index)) else {
+        let asked = law.batch.is_none() && graph.edge_of(follower) == Some(index);
+        let Some(custom) = law.custom.as_ref().filter(|_| asked) else {
             continue;
         };
         if run.record.laws.len() == told {

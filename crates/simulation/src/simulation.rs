@@ -1,5 +1,6 @@
 //! A simulation: its state, its queries, and the changes that it takes between steps.
 
+use crate::batch::{BatchError, BatchPipeline};
 use crate::chase::Chases;
 use crate::events::Events;
 use crate::fault::Fault;
@@ -8,13 +9,14 @@ use crate::plant::Plant;
 use crate::safety::SafetyPipeline;
 use crate::sensing::SensingPipeline;
 use crate::setup::Setup;
-use crate::step::step;
-use formation::{Decision, EdgeLaw, Estimate, Formation, FormationState};
+use crate::step::{act, sense, step};
+use formation::{AgentAction, Decision, EdgeLaw, Estimate, Formation, FormationState};
+use laws::{BatchLaw, Input};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use vocabulary::{
-    CameraRenderer, EdgeState, FleetInfo, MeasurementRecord, Observation, ObserverStart, Relative,
-    StepRecord, TimeMode,
+    CameraRenderer, Contact, Edge, EdgeState, EntityId, FleetInfo, Limits, MeasurementRecord, Observation,
+    ObserverStart, Relative, Snapshot, StepRecord, TimeMode, TrackingState,
 };
 use world::Handling;
 
@@ -30,6 +32,8 @@ pub struct Simulation {
     pub(crate) observations: Vec<Observation>,
     pub(crate) sensing: Option<SensingPipeline>,
     pub(crate) safety: Option<SafetyPipeline>,
+    /// A law that decides for many followers.
+    pub(crate) batch: Option<BatchPipeline>,
     /// Robots that lead by commands.
     pub(crate) chases: Chases,
     pub(crate) events: Events,
@@ -40,6 +44,8 @@ pub struct Simulation {
     /// The moment before, over which the next is written.
     pub(crate) spare: StepRecord,
     pub(crate) sample: u64,
+    /// Whether the first half of the next step is done.
+    pub(crate) sensed: bool,
     pub(crate) last_sample: u64,
     pub(crate) stop_at_contact: bool,
     pub(crate) stopped: bool,
@@ -92,10 +98,12 @@ impl Simulation {
             observations,
             sensing,
             safety,
+            batch: None,
             frames: Vec::new(),
             spare: record.clone(),
             record,
             sample: 0,
+            sensed: false,
             last_sample: sample_at(setup.duration, setup.period),
             stop_at_contact: setup.stop_at_contact,
             stopped: false,
@@ -108,6 +116,53 @@ impl Simulation {
     /// The next control sample: what is measured, what is decided, what is applied. `None` when the run is over.
     pub fn next_record(&mut self) -> Option<&StepRecord> {
         step(self).then_some(&self.record)
+    }
+
+    /// The first half of the next step: time goes on to its sample, and followers know what they know there, see
+    /// [`Simulation::told`]. Their decisions are left to [`Simulation::act`]. False when the run is over.
+    pub fn sense(&mut self) -> bool {
+        sense(self)
+    }
+
+    /// The second half of a step: `actions` decide for the robots that they name, laws for the others. False when the run is
+    /// over.
+    pub fn act(&mut self, actions: impl IntoIterator<Item = (usize, AgentAction)>) -> bool {
+        if !sense(self) {
+            return false;
+        }
+        for (robot, action) in actions {
+            self.state.set_action(robot, action);
+        }
+        act(self)
+    }
+
+    /// Hands to `read` what the law of edge number `edge` is told at the sample that [`Simulation::sense`] went on to, and its true
+    /// tracking error, set point minus truth, [m, rad]. Motions of leaders are those of the sample before.
+    pub fn told<R>(&self, edge: usize, read: impl FnOnce(&Input<'_>, [f64; 2]) -> R) -> R {
+        let (time, seen) = (self.sample as f64 * self.period, &self.observations[edge]);
+        if seen.sight == TrackingState::Truth {
+            return self.formation.told(edge, time, seen, &self.state, read);
+        }
+        let Edge { leader, follower } = self.formation.edges()[edge];
+        let robots = &self.snapshot().robots;
+        let truth = Observation::true_of([leader, follower].map(|k| &robots[k].motion));
+        let error = self.formation.true_error(edge, time, &truth, &self.state);
+        self.formation.told(edge, time, seen, &self.state, |input, _| read(input, error))
+    }
+
+    /// Where everything is as of the last call of [`Simulation::sense`] or [`Simulation::next_record`].
+    pub fn snapshot(&self) -> &Snapshot {
+        self.plant.world().snapshot()
+    }
+
+    /// Contacts that are open or have ended in the last period.
+    pub fn contacts(&self) -> &[Contact] {
+        self.plant.world().contacts()
+    }
+
+    /// Pictures say this of the laws of the run.
+    pub fn set_caption(&mut self, caption: String) {
+        self.fleet.caption = caption;
     }
 
     /// Names, bodies and edges of the run.
@@ -140,6 +195,45 @@ impl Simulation {
         if let Some(sensing) = &mut self.sensing {
             sensing.open(eyes);
         }
+    }
+
+    /// Attaches a law that decides for `followers`, numbers of robots, in the place of their own laws; before the first step.
+    ///
+    /// # Errors
+    /// [`BatchError`], naming the robot.
+    pub fn attach_law(&mut self, law: Box<dyn BatchLaw>, followers: &[usize]) -> Result<(), BatchError> {
+        let name = |robot: usize| self.fleet.name(EntityId::Robot(robot)).to_owned();
+        if self.mode == TimeMode::Continuous {
+            return Err(BatchError::Continuous);
+        }
+        if self.sample > 0 {
+            return Err(BatchError::Begun(self.sample));
+        }
+        let mut decides_for = vec![false; self.fleet.robots.len()];
+        for robot in followers {
+            match self.fleet.edges_of(*robot).count() {
+                0 => return Err(BatchError::Leads(name(*robot))),
+                1 => decides_for[*robot] = true,
+                _ => return Err(BatchError::SeveralLeaders(name(*robot))),
+            }
+        }
+        self.fleet.caption = format!("law {}", law.name());
+        let batch = BatchPipeline { law, decides_for };
+        let mut laws = self.formation.laws().to_vec();
+        batch.mark(self.formation.edges(), &mut laws);
+        self.formation.apply_parameters(laws, self.limits());
+        self.batch = Some(batch);
+        Ok(())
+    }
+
+    /// Bounds of all robots.
+    fn limits(&self) -> Vec<Limits> {
+        (0..self.fleet.robots.len()).map(|robot| *self.formation.limits(robot)).collect()
+    }
+
+    /// Whether the last sample has been computed, or the run ended before it.
+    pub fn is_over(&self) -> bool {
+        self.sample > self.last_sample || self.stopped || self.fault.is_some()
     }
 
     /// Why the run ended before its time, if a fault ended it.
@@ -201,7 +295,7 @@ impl Simulation {
     /// Followers observe the true state from now on, whatever their sensors: for predictions, which draw no pictures.
     pub fn trust(&mut self) {
         self.sensing = None;
-        let limits = (0..self.fleet.robots.len()).map(|robot| *self.formation.limits(robot)).collect();
+        let limits = self.limits();
         self.formation.apply_parameters(trusting(self.formation.laws()), limits);
         let told = |parameters: &ParameterSet| ParameterSet {
             laws: trusting(&parameters.laws),

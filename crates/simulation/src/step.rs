@@ -7,13 +7,21 @@ use crate::plant::Plant;
 use crate::record::write_record;
 use crate::simulation::Simulation;
 use formation::{EdgeLaw, Estimate};
-use vocabulary::{Contact, Edge, TimeMode};
+use vocabulary::{Command, Contact, Edge, TimeMode};
 use world::World;
 
 /// Computes the next control sample into `run.record`; false when the run is over.
 pub(crate) fn step(run: &mut Simulation) -> bool {
-    if run.sample > run.last_sample || run.stopped || run.fault.is_some() {
+    sense(run) && act(run)
+}
+
+/// The first half of a step: time goes on to the sample, and followers know what they know there. False when the run is over.
+pub(crate) fn sense(run: &mut Simulation) -> bool {
+    if run.is_over() {
         return false;
+    }
+    if run.sensed {
+        return true;
     }
     // 1. The period between the last sample and this one: robots drive, observers follow.
     if run.sample > 0 {
@@ -35,9 +43,21 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
         run.fault = Some(Fault::CameraRenderer(fault));
         return false;
     }
+    prepare(run, time);
+    run.sensed = true;
+    true
+}
+
+/// The second half of a step, after [`sense`]: decisions, and the record. False where a fault ends the run.
+pub(crate) fn act(run: &mut Simulation) -> bool {
+    run.sensed = false;
+    let time = run.sample as f64 * run.period;
     // 6. Every law decides on what its follower knows, leaders before followers (eqs 20, 22, 42). Places are taken as far as
     //    there is room, and what is decided is applied as far as it is safe.
-    decide(run, time);
+    if let Err(fault) = decide(run, time) {
+        run.fault = Some(Fault::Law(fault.to_string()));
+        return false;
+    }
     run.plant.world_mut().apply(&run.state.commands);
     // 7. State and decision are recorded, unless a number in them is not finite.
     std::mem::swap(&mut run.record, &mut run.spare);
@@ -52,19 +72,40 @@ pub(crate) fn step(run: &mut Simulation) -> bool {
     true
 }
 
-/// Decides the commands of all robots.
-fn decide(run: &mut Simulation, time: f64) {
-    let Simulation { formation, state, observations, plant, sensing, safety, chases, events, fleet, .. } =
-        run;
-    if safety.is_none() && chases.is_empty() && events.is_idle() {
-        return formation.decide(time, observations, state);
-    }
-    let (snapshot, sensing) = (plant.world().snapshot(), sensing.as_ref());
+/// Safety filters and those who narrow look round, and memories of laws go on to the sample.
+fn prepare(run: &mut Simulation, time: f64) {
+    let Simulation { formation, state, observations, plant, safety, .. } = run;
     if let Some(safety) = safety {
         safety.begin();
-        safety.look(formation, time, observations, state, snapshot);
+        safety.look(formation, time, observations, state, plant.world().snapshot());
     }
-    formation.decide_through(time, observations, state, &mut |robot, decided| {
+    formation.prepare(time, observations, state);
+}
+
+/// Decides the commands of all robots.
+///
+/// # Errors
+/// [`laws::Fault`] where a law for many followers gives none.
+fn decide(run: &mut Simulation, time: f64) -> Result<(), laws::Fault> {
+    let Simulation {
+        formation,
+        state,
+        observations,
+        plant,
+        sensing,
+        safety,
+        chases,
+        events,
+        fleet,
+        batch,
+        ..
+    } = run;
+    if batch.is_none() && safety.is_none() && chases.is_empty() && events.is_idle() {
+        formation.decide(time, observations, state);
+        return Ok(());
+    }
+    let (snapshot, sensing) = (plant.world().snapshot(), sensing.as_ref());
+    let filter = &mut |robot: usize, decided: Command| {
         let limits = formation.limits(robot);
         let (wished, master) =
             events.command(robot, &snapshot.robots[robot].motion, limits).unwrap_or_else(|| {
@@ -74,10 +115,15 @@ fn decide(run: &mut Simulation, time: f64) {
             Some(safety) => safety.admit(robot, wished, formation, observations, snapshot, sensing),
             None => wished,
         }
-    });
+    };
+    match batch {
+        Some(batch) => formation.decide_with(time, observations, state, &mut *batch.law, filter)?,
+        None => formation.decide_through(time, observations, state, filter),
+    }
     if let Some(safety) = safety {
         safety.end();
     }
+    Ok(())
 }
 
 /// Applies the parameter sets that are due; returns the edges whose observers begin to run.
@@ -93,7 +139,11 @@ fn apply_changes(run: &mut Simulation) -> Vec<usize> {
 }
 
 fn apply(run: &mut Simulation, parameters: &ParameterSet, woken: &mut Vec<usize>) {
-    let pairs = run.formation.laws().iter().zip(&parameters.laws).enumerate();
+    let mut laws = parameters.laws.clone();
+    if let Some(batch) = &run.batch {
+        batch.mark(run.formation.edges(), &mut laws);
+    }
+    let pairs = run.formation.laws().iter().zip(&laws).enumerate();
     woken.extend(pairs.filter(|(_, (before, after))| wakes(before, after)).map(|(edge, _)| edge));
     // Who has stood or led since has no least speed.
     for (robot, (now, next)) in run.handling.iter_mut().zip(&parameters.handling).enumerate() {
@@ -103,7 +153,7 @@ fn apply(run: &mut Simulation, parameters: &ParameterSet, woken: &mut Vec<usize>
         }
     }
     let limits = run.handling.iter().map(|handling| handling.limits).collect();
-    run.formation.apply_parameters(parameters.laws.clone(), limits);
+    run.formation.apply_parameters(laws, limits);
     run.plant.apply_parameters(&run.handling, &run.formation);
     if let Some(safety) = &mut run.safety {
         safety.filters.clone_from(&parameters.filters);

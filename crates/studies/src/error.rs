@@ -18,6 +18,9 @@ pub enum Error {
     /// Nobody could draw what cameras see.
     #[error("{0}")]
     Camera(String),
+    /// A law for many followers gave no commands.
+    #[error("{0}")]
+    Law(String),
     /// The caller said that the work is not to go on.
     #[error("interrupted after {samples} samples")]
     Interrupted {
@@ -39,6 +42,7 @@ impl From<&Fault> for Error {
         match fault {
             Fault::CameraRenderer(text) => Self::Camera(text.clone()),
             Fault::NotFinite(what) => Self::NotFinite(what.clone()),
+            Fault::Law(text) => Self::Law(text.clone()),
         }
     }
 }

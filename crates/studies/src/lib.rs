@@ -2,7 +2,7 @@
 //!
 //! [`run`] steps, records, certifies and judges one run; [`verdict`] holds its metrics against what the scene expects.
 //! [`tune`] searches gains, [`certify`] examines the theorems along a run, [`budget`] finds where errors come from,
-//! [`accuracy`] and [`dataset`] look at what cameras see, [`replay`], [`diff`] and
+//! [`copies`] are driven from outside, for learning; [`accuracy`] and [`dataset`] look at what cameras see, [`replay`], [`diff`] and
 //! [`likeness`] hold runs, scenes and pictures against each other, [`link`] a run against the link to it. [`pace`] measures
 //! how fast this machine is.
 //!
@@ -16,6 +16,8 @@ pub mod accuracy;
 #[cfg(not(target_family = "wasm"))]
 pub mod budget;
 pub mod certify;
+#[cfg(not(target_family = "wasm"))]
+pub mod copies;
 #[cfg(not(target_family = "wasm"))]
 pub mod dataset;
 #[cfg(not(target_family = "wasm"))]
@@ -47,4 +49,4 @@ pub use record_source::RecordSource;
 #[cfg(not(target_family = "wasm"))]
 pub use scene_run::run_options;
 pub use scene_run::{COMMIT, PROGRAM, RendererFactory, STRIDE, SceneRun};
-pub use simulation::{Fault, caption, gates, in_line, too_slow_leads};
+pub use simulation::{Fault, caption};

@@ -6,7 +6,7 @@ use crate::{Error, STRIDE, SceneRun};
 use metrics::{CertificateMetrics, Digest, JudgedExpectation, Metrics, MetricsBuilder};
 use recording::{Finished, Recorder, Status};
 use simulation::Fault;
-use vocabulary::StepRecord;
+use vocabulary::{Contact, StepRecord};
 
 /// What came of a run.
 pub struct JudgedRun {
@@ -22,21 +22,36 @@ pub struct JudgedRun {
     pub digest_then: Option<String>,
     /// The scene's expectations; none of a run that was interrupted.
     pub findings: Vec<JudgedExpectation>,
+    /// The contacts that were open at the end, as if they ended then.
+    pub closed: Vec<Contact>,
     /// Whether everything that was to be recorded is on the disk.
     pub written: Result<(), recording::Error>,
 }
 
-/// Runs a scene to its end, into `recorder` if there is one, and takes the digest at `then` s on the way. `go_on` gets the number of steps every [`STRIDE`] steps and says
-/// whether the run goes on; a run that does not is interrupted.
+/// Runs a scene to its end, into `recorder` if there is one, and takes the digest at `then` s on the way. `go_on` gets the
+/// number of steps every [`STRIDE`] steps and says whether the run goes on; a run that does not is interrupted.
 ///
 /// # Errors
-/// [`Error::Recording`] where the disk refuses a record, [`Error::Camera`] where cameras cannot take their pictures. What
-/// was recorded until then stays, as interrupted.
+/// As [`run_through`].
 pub fn run(
     run: SceneRun,
     recorder: Option<Recorder>,
     then: Option<f64>,
     mut go_on: impl FnMut(u64) -> bool,
+) -> Result<JudgedRun, Error> {
+    run_through(run, recorder, then, |_, steps| steps % STRIDE != 0 || go_on(steps))
+}
+
+/// As [`run`]; `take` gets every record, and the number of steps so far.
+///
+/// # Errors
+/// [`Error::Recording`] where the disk refuses a record, [`Error::Camera`] where cameras cannot take their pictures,
+/// [`Error::Law`] where a law for many followers gives no commands. What was recorded until then stays, as interrupted.
+pub fn run_through(
+    run: SceneRun,
+    recorder: Option<Recorder>,
+    then: Option<f64>,
+    mut take: impl FnMut(&StepRecord, u64) -> bool,
 ) -> Result<JudgedRun, Error> {
     let SceneRun { scene, mut simulation } = run;
     let metrics = || Box::new(MetricsBuilder::new(simulation.fleet(), scene.judging()));
@@ -56,13 +71,13 @@ pub fn run(
         if then == Some(steps) {
             digest_then = Some(sink.digest());
         }
-        if steps % STRIDE == 0 && !go_on(steps) {
+        if !take(simulation.record(), steps) {
             break;
         }
     }
     let broken = match simulation.fault() {
         Some(Fault::NotFinite(what)) => Some(not_finite(what)),
-        Some(fault @ Fault::CameraRenderer(_)) => {
+        Some(fault @ (Fault::CameraRenderer(_) | Fault::Law(_))) => {
             let error = Error::from(fault);
             sink.abandon();
             return Err(error);
@@ -80,9 +95,10 @@ pub fn run(
         Status::Interrupted => vec![],
         _ => verdict(&scene, &sink.metrics(), status == Status::Complete).into_iter().chain(broken).collect(),
     };
+    let closed = sink.closed_contacts();
     let (metrics, digest, written) = sink.finish(status, certificates, &findings);
     let digest_then = then.map(|_| digest_then.unwrap_or_else(|| digest.clone()));
-    Ok(JudgedRun { status, steps, metrics, digest, digest_then, findings, written })
+    Ok(JudgedRun { status, steps, metrics, digest, digest_then, findings, closed, written })
 }
 
 /// Where records go: to a folder, or only into the sums that a verdict needs.
@@ -120,6 +136,13 @@ impl RecordSink {
         match self {
             Self::Disk(recorder) => recorder.metrics(),
             Self::Memory { metrics, .. } => metrics.finish(),
+        }
+    }
+
+    fn closed_contacts(&self) -> Vec<Contact> {
+        match self {
+            Self::Disk(recorder) => recorder.closed_contacts(),
+            Self::Memory { metrics, .. } => metrics.close_contacts(),
         }
     }
 

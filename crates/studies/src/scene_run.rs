@@ -2,7 +2,7 @@
 
 use crate::Error;
 use scene::Scene;
-use simulation::{BuildError, Simulation, build};
+use simulation::{BuildError, Simulation, build, gates, in_line, too_slow_leads};
 use vocabulary::{CameraRenderer, FleetInfo};
 
 /// Name and version of the program, as manifests and pictures carry them.
@@ -33,6 +33,18 @@ impl SceneRun {
     pub fn new(scene: Scene) -> Result<Self, BuildError> {
         let simulation = Simulation::new(build(&scene)?);
         Ok(Self { scene, simulation })
+    }
+
+    /// What deserves a look before the run: what comes too late to take effect, leads that are too slow, gates that are too
+    /// narrow, followers that stand in line with both of their leaders.
+    pub fn remarks(&self) -> Vec<String> {
+        let (simulation, duration) = (&self.simulation, self.scene.time.duration);
+        let mut remarks = self.scene.late();
+        remarks.extend(self.scene.unused());
+        remarks.extend(too_slow_leads(simulation, duration));
+        remarks.extend(gates(simulation, duration));
+        remarks.extend(in_line(simulation));
+        remarks
     }
 
     /// Gives the cameras of the run what draws for them, if the scene has cameras that take pictures.

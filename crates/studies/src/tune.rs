@@ -1,8 +1,8 @@
 //! Gains that fit a scene's vehicles: what a few hundred runs of the scene show, searched by COBYLA from several starts.
 //!
 //! The cost of a run is in units of one: late errors against 1 cm and 1°, errors summed over the run against 1 m s and
-//! 1 rad s, commands that a limit cut against a tenth of the samples, and a hundred for every contact or robot that can
-//! drive no more. The search goes over logarithms, since gains multiply, and begins at the scene's own gains.
+//! 1 rad s, commands that a limit cut against a tenth of the samples, and a hundred for every contact, robot that can
+//! drive no more, or law that breaks off. The search goes over logarithms, since gains multiply, and begins at the scene's own gains.
 
 use cobyla::{RhoBeg, StopTols, minimize};
 use metrics::{Metrics, MetricsBuilder};
@@ -29,7 +29,6 @@ struct Knob {
 pub struct Trial {
     /// What was tried, by name: `k` in 1/s, `beta` in m/s² and rad/s², `slope` in 1/m and 1/rad and `epsilon` in s, or the
     /// parameters of a custom law.
-    #[serde(flatten)]
     pub gains: BTreeMap<String, f64>,
     /// What it cost; less is better.
     pub cost: f64,
@@ -164,18 +163,33 @@ impl Knob {
         if self.logarithmic { math::ln(value) } else { (value - low) / (high - low).max(f64::MIN_POSITIVE) }
     }
 
+    /// The value that is tried. It has four digits, so that what is printed is what was run.
     fn value(&self, seen: f64) -> f64 {
         let [low, high] = self.bounds;
-        if self.logarithmic {
-            math::exp(seen).clamp(low, high)
-        } else {
-            (low + seen * (high - low)).clamp(low, high)
-        }
+        let value = if self.logarithmic { math::exp(seen) } else { low + seen * (high - low) };
+        rounded(value).clamp(low, high)
     }
 
     fn first_step(&self) -> f64 {
         if self.logarithmic { math::ln(FIRST_STEP) } else { FIRST_SHARE }
     }
+}
+
+/// A value to four digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.3e}").parse().unwrap_or(value)
+}
+
+/// Whose gains are searched, and what law they have: followers by name, in their order.
+pub fn tuned(scene: &Scene) -> Option<(String, Vec<&str>)> {
+    let search = Search::of(scene)?;
+    let has = |follow: &Follow| match search.law {
+        Some(law) => follow.law.custom() == Some(law),
+        None => follow.law.custom().is_none(),
+    };
+    let names = scene.followers().filter(|(_, follow)| has(follow)).map(|(name, _)| name).collect();
+    let law = search.law.map_or("the built-in laws", WrittenLaw::name);
+    Some((law.to_owned(), names))
 }
 
 /// Tries the scene's own gains first and then at most `most` others; `look` sees every trial and says whether to go on.
@@ -247,7 +261,8 @@ fn cost(metrics: &Metrics) -> f64 {
     };
     let edges: f64 = metrics.edges.iter().map(edge).sum();
     let unable = metrics.robots.iter().filter(|robot| robot.condition != "able").count();
-    edges / metrics.edges.len().max(1) as f64 + DISASTER * (metrics.contacts + unable) as f64
+    let disasters = metrics.contacts + unable + metrics.law_faults.len();
+    edges / metrics.edges.len().max(1) as f64 + DISASTER * disasters as f64
 }
 
 #[cfg(test)]

@@ -2,9 +2,9 @@
 
 use crate::doctor::table::{FILM_RATE, Row, Subject};
 use crate::failure::Failure;
-use crate::playback::Playback;
 use crate::{cameras, interrupt};
 use film::{Film, FilmKind};
+use footage::Playback;
 use rendering::{Gpu, PictureSpec, Renderer, Style, ViewLayout, Viewpoint};
 use scene::{Scene, shipped};
 use studies::pace::{Pace, PaceBench};
@@ -90,7 +90,7 @@ struct Studio {
 /// Two moments to draw in turn, and the run with what was before them: whatever a renderer keeps from one picture to the next
 /// is of no use then, as where robots drive.
 struct Moments {
-    playback: Playback,
+    playback: Playback<'static>,
     records: [StepRecord; 2],
 }
 
@@ -110,9 +110,10 @@ impl Studio {
     }
 
     /// The run, and how it is when there is something to draw.
-    fn playback(&self) -> Result<(Playback, StepRecord), Failure> {
+    fn playback(&self) -> Result<(Playback<'static>, StepRecord), Failure> {
         let run = SceneRun::new(parsed(self.name)?).map_err(studies::Error::from)?;
-        let mut playback = Playback::new(&self.fleet, RecordSource::Run(Box::new(run.simulation)));
+        let mut playback =
+            Playback::new(&self.fleet, RecordSource::Run(Box::new(run.simulation)), &interrupt::asked);
         let record = playback.at(DRAWN_AT);
         playback.check()?;
         Ok((playback, record))
@@ -162,7 +163,7 @@ impl Studio {
     }
 
     /// Shoots a film; whether it came to its end.
-    fn shoot(&mut self, mut playback: Playback, mut film: Film) -> Result<bool, Failure> {
+    fn shoot(&mut self, mut playback: Playback<'_>, mut film: Film) -> Result<bool, Failure> {
         for frame in 0..FRAMES {
             if interrupt::asked() {
                 return Ok(false);

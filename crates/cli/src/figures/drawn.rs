@@ -4,8 +4,9 @@ use super::folder::Folder;
 use super::meter::Meter;
 use super::{Subject, ready, stop};
 use crate::failure::Failure;
-use crate::playback::Playback;
+use crate::interrupt;
 use film::{FilmKind, png};
+use footage::Playback;
 use rendering::{Gpu, PictureSpec, Renderer, Style, ViewLayout};
 use report::{Case, FinishedRun, PlannedRun, Report, ReportFilm, ReportPicture, add_picture, find};
 use studies::{PROGRAM, RecordSource};
@@ -92,7 +93,7 @@ pub(super) fn draw(
     let file = format!("{}.mp4", show.name);
     let path = folder.place(&file);
     let mut film = film::Film::create(&path, FilmKind::Mp4, FILM[0], FILM[1], RATE)?;
-    let mut playback = Playback::new(&fleet, RecordSource::Run(Box::new(simulation)));
+    let mut playback = Playback::new(&fleet, RecordSource::Run(Box::new(simulation)), &interrupt::asked);
     let mut due = show.picture.as_ref();
     for frame in 0..show.frames() {
         let time = frame as f64 * show.speed() / RATE;
@@ -131,7 +132,7 @@ fn picture(
     of: &PictureOfRun,
     gpu: &Gpu,
     layout: &ViewLayout,
-    playback: &mut Playback,
+    playback: &mut Playback<'_>,
     runs: &[FinishedRun],
     report: &mut Report,
 ) -> Result<(), Failure> {

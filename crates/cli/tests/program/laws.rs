@@ -40,7 +40,7 @@ fn laws_are_listed_shown_checked_and_begun() {
         code == 2 && told_.contains("comes with the program") && !folder.path().join("integral").exists()
     );
     let (code, out, _) = laws(&["check", "mine.law"]);
-    assert!(code == 0 && out.contains("memory: n") && out.contains("0.2 to 10"), "{out}");
+    assert!(code == 0 && out.contains("memory: sum") && out.contains("0.2 to 10"), "{out}");
 
     fs::write(folder.path().join("wrong.law"), "let a = leader.distance + leader.bearing\ncommand = x, 0\n")
         .expect("a file");

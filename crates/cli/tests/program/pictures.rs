@@ -85,7 +85,7 @@ fn notes_name_the_flag_that_they_are_about() {
         (
             &["0", "--inset-camera", "follower-1"],
             "--inset-camera shows the picture of that robot without detections: no follower has a sensor in this scene; \
-             try --set sensing.kind=camera\n",
+             try sensing.kind=camera\n",
         ),
         (
             &["0", "--overlay", "--view", "camera:follower-1"],

@@ -169,7 +169,7 @@ impl LinearEdge {
     /// # Errors
     /// [`NotLinear`] where there is no steady motion to linearise about.
     pub fn about(law: &EdgeLaw, leader: &MotionInput) -> Result<Self, NotLinear> {
-        if law.custom.is_some() {
+        if !law.is_built_in() {
             return Err(NotLinear::CustomLaw);
         }
         if law.law.kind != LawKind::FullState && law.law.switching == Switching::Sign {
@@ -334,6 +334,7 @@ mod tests {
         EdgeLaw {
             law,
             custom: None,
+            batch: None,
             observer,
             tracker: None,
             set_point,

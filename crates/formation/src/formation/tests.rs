@@ -22,6 +22,7 @@ fn chain(kind: LawKind) -> Formation {
     let edge = EdgeLaw {
         law,
         custom: None,
+        batch: None,
         observer,
         tracker: None,
         set_point: SetPointTrajectory::constant(2.0, -2.3),
@@ -113,6 +114,8 @@ impl Counting {
             name: "bound".to_owned(),
             symbol: "b".to_owned(),
             unit: Unit::NUMBER,
+            unit_name: String::new(),
+            unit_size: 1.0,
             default: 3.0,
             range: [0.0, 10.0],
             scale: Scale::Linear,
@@ -242,4 +245,66 @@ fn in_continuous_time_samples_leave_the_memory_as_it_is() {
     let mut rates = vec![vec![]; 2];
     formation.evaluate(0.0, &seen, &mut state, &mut rates);
     assert_eq!((state.customs[1].memory(), &rates[1][..]), (&[1.0][..], &[1.0][..]));
+}
+
+/// A law for many followers that asks for the turn rate of the leader and counts its calls.
+#[derive(Debug, Clone)]
+struct Following {
+    knows: Knowledge,
+    calls: Vec<Vec<(usize, bool)>>,
+}
+
+impl BatchLaw for Following {
+    fn name(&self) -> &'static str {
+        "following"
+    }
+
+    fn knows(&self) -> Knowledge {
+        self.knows
+    }
+
+    fn decide(&mut self, inputs: &[BatchInput<'_>]) -> Result<Vec<Command>, Fault> {
+        if self.calls.len() == 4 {
+            return Err(Fault { place: None, message: "tired".into() });
+        }
+        self.calls.push(inputs.iter().map(|one| (one.robot, one.meets)).collect());
+        let turn_rate = |one: &BatchInput<'_>| one.input.leaders[0].motion.turn_rate;
+        Ok(inputs.iter().map(|one| Command { acceleration: 0.0, turn_rate: turn_rate(one) }).collect())
+    }
+
+    fn fork(&self) -> Box<dyn BatchLaw> {
+        Box::new(self.clone())
+    }
+}
+
+#[test]
+fn a_law_for_many_followers_is_asked_once_or_leaders_first() {
+    let seen = [observation(2.0), observation(2.0)];
+    let lost = Observation { sight: TrackingState::Lost, ..observation(2.0) };
+    let filter = &mut |_: usize, command: Command| command;
+    let ready = |knows| {
+        let mut formation = chain(LawKind::OutputFeedback);
+        formation.edges.iter_mut().for_each(|edge| edge.batch = Some(knows));
+        let state = formation.start(vec![Estimate::default(); 2]);
+        (formation, state, Following { knows, calls: vec![] })
+    };
+    // What leaders do at the same sample goes down the chain.
+    let (formation, mut state, mut law) = ready(Knowledge::Motion);
+    formation.decide_with(0.0, &seen, &mut state, &mut law, filter).expect("commands");
+    assert_eq!(law.calls, [[(1, true)], [(2, true)]]);
+    assert!(state.commands.iter().all(|command| command.turn_rate == 0.3));
+
+    let (mut formation, mut state, mut law) = ready(Knowledge::Output);
+    formation.decide_with(0.0, &seen, &mut state, &mut law, filter).expect("commands");
+    formation.decide_with(0.01, &[seen[0], lost], &mut state, &mut law, filter).expect("commands");
+    formation.decide_with(0.02, &seen, &mut state, &mut law, filter).expect("commands");
+    // Who has lost its leader is not asked, and meets it anew.
+    assert_eq!(law.calls[..2], [vec![(1, true), (2, true)], vec![(1, false)]]);
+    assert_eq!(law.calls[2], [(1, false), (2, true)]);
+    // The others keep their laws.
+    formation.edges[0].batch = None;
+    formation.decide_with(0.03, &seen, &mut state, &mut law, filter).expect("commands");
+    assert_eq!(law.calls[3], [(2, false)]);
+    let fault = formation.decide_with(0.04, &seen, &mut state, &mut law, filter).expect_err("tired");
+    assert_eq!(fault.to_string(), "tired");
 }

@@ -108,7 +108,7 @@ pub fn text(ui: &mut Ui, app_state: &AppState, out: &mut Vec<Action>) {
 /// A slider for a parameter.
 fn row(ui: &mut Ui, parameter: &Parameter, value: f64, out: &mut Vec<Action>) {
     let Parameter { name, symbol, default, range: [low, high], scale, help, .. } = parameter;
-    let unit = parameter.unit.behind();
+    let unit = parameter.behind();
     let key = format!("law.parameters.{name}");
     ui.horizontal(|ui| {
         sign(ui, |ui| ui.label(RichText::new(symbol).strong()));

@@ -19,6 +19,13 @@ fn edit(text: &str) -> Action {
     Action::EditLaw(text.to_owned())
 }
 
+/// The template with a memory that counts samples.
+fn counting() -> String {
+    let memory = "memory sum = 0 [m s]\nsum' = e.x\n";
+    assert!(TEMPLATE.contains(memory));
+    TEMPLATE.replace(memory, "memory n = 0\nn = n + 1\n")
+}
+
 #[test]
 fn a_law_is_chosen_for_all_or_for_one_and_takes_hold_at_the_next_sample() {
     let mut rig = Rig::new(&with(THREE, &[("robots.left.law.k", "4.0")]));
@@ -42,12 +49,12 @@ fn a_law_is_chosen_for_all_or_for_one_and_takes_hold_at_the_next_sample() {
 #[test]
 fn what_compiles_takes_hold_with_the_memory_before_and_what_does_not_leaves_the_law() {
     let mut rig = Rig::new(THREE);
-    rig.act(&[choose(TEMPLATE)]);
+    rig.act(&[choose(&counting())]);
     rig.steps(30);
     let value = |rig: &Rig, name: &str| law(&rig.app_state, 1).and_then(|law| law.value(name));
     assert_eq!(value(&rig, "n"), Some(30.0));
     // Another number, and another quantity to show; what it has counted goes on.
-    let other = TEMPLATE.replace("n = n + 1", "n = n + 2\nlet twice = 2 * n");
+    let other = counting().replace("n = n + 1", "n = n + 2\nlet twice = 2 * n");
     rig.act(&[edit(&other)]);
     rig.steps(10);
     assert_eq!((value(&rig, "n"), value(&rig, "twice")), (Some(50.0), Some(100.0)));
@@ -63,7 +70,7 @@ fn what_compiles_takes_hold_with_the_memory_before_and_what_does_not_leaves_the_
     rig.act(&[Action::Release, Action::Undo]);
     rig.steps(10);
     assert_eq!((value(&rig, "n"), value(&rig, "twice")), (Some(80.0), None));
-    assert_eq!(rig.app_state.law_edit().expect("a text").text, TEMPLATE.trim());
+    assert_eq!(rig.app_state.law_edit().expect("a text").text, counting().trim());
 }
 
 #[test]
@@ -88,7 +95,7 @@ fn a_module_has_sliders_and_signals_and_no_text() {
     // A branch of it is a scene that replays, and another law takes its place.
     let (branch, script) = (rig.told(0), rig.app_state.script().expect("a scene"));
     assert_eq!(run(&script), (branch.samples, branch.digest), "{script}");
-    rig.act(&[choose(TEMPLATE)]);
+    rig.act(&[choose(&counting())]);
     rig.steps(5);
     assert_eq!(names(&rig)[0], "n");
 }
@@ -116,9 +123,9 @@ fn parameters_keep_their_values_while_the_text_has_them() {
 fn what_was_typed_is_kept_with_the_run_and_replays_bit_for_bit() {
     let mut rig = Rig::new(THREE);
     rig.steps(10);
-    rig.act(&[choose(TEMPLATE)]);
+    rig.act(&[choose(&counting())]);
     rig.steps(20);
-    rig.act(&[edit(&TEMPLATE.replace("k^2 * e.x", "2 * k^2 * e.x"))]);
+    rig.act(&[edit(&counting().replace("k^2 * e.x", "2 * k^2 * e.x"))]);
     rig.steps(20);
     let branch = rig.told(0);
     let script = rig.app_state.script().expect("a scene");

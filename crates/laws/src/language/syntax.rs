@@ -33,6 +33,10 @@ pub(super) struct ParameterSyntax<'a> {
     pub(super) name: &'a str,
     pub(super) at: Stretch,
     pub(super) unit: Unit,
+    /// As it is declared.
+    pub(super) unit_name: String,
+    /// What one of it is in SI.
+    pub(super) unit_size: f64,
     pub(super) default: f64,
     pub(super) range: [f64; 2],
     pub(super) scale: Scale,

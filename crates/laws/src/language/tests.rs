@@ -372,12 +372,14 @@ fn a_declaration_says_what_the_text_says() {
         ("k₁", "rad/s", "a gain")
     );
     assert_eq!((k1.default, k1.range, k1.scale), (5.0, [0.1, 20.0], Scale::Linear));
+    assert_eq!((epsilon.behind().as_str(), epsilon.as_told(2.0)), (" ms", 0.002));
+    assert_eq!((a.behind().as_str(), a.as_told(a.default)), (" deg", -PI / 4.0));
     assert_eq!(
         (epsilon.symbol.as_str(), epsilon.unit, epsilon.help.as_str()),
         ("e", Unit::new(0, 1), "small")
     );
-    assert_eq!((epsilon.default, epsilon.range, epsilon.scale), (0.001, [0.0001, 0.1], Scale::Logarithmic));
-    assert_eq!((a.unit.to_string().as_str(), a.default, a.range), ("rad", -PI / 4.0, [-PI / 2.0, PI / 2.0]));
+    assert_eq!((epsilon.default, epsilon.range, epsilon.scale), (1.0, [0.1, 100.0], Scale::Logarithmic));
+    assert_eq!((a.unit.to_string().as_str(), a.default, a.range), ("rad", -45.0, [-90.0, 90.0]));
     let shown: Vec<String> =
         declaration.shown.iter().map(|shown| format!("{} [{}]", shown.name, shown.unit)).collect();
     assert_eq!(shown, ["e.x [m]", "e.y [rad]", "ok []"]);
@@ -469,7 +471,7 @@ fn units_that_do_not_fit_are_named() {
         ),
         (
             "let a = leader.output + 1",
-            "1:9-1:26 `leader.output` is a vector in (m, rad), `1` is a number: they cannot be added",
+            "1:9-1:26 `leader.output` is a vector in (m, rad), `1` is a number: they cannot be added; for both components write `(1, 1)`",
         ),
         (
             "let a = leader.output + wanted.rates",
@@ -573,7 +575,8 @@ fn unknown_names_are_followed_by_those_that_may_be_meant() {
         ("let a = sin", "1:9-1:12 `sin` is a function: write `sin(…)`"),
         ("let a = sqr(2)", "1:9-1:12 there is no function `sqr`: a square is written `x ^ 2`"),
         ("let a = log(2)", "1:9-1:12 there is no function `log`: the natural logarithm is `ln(x)`"),
-        ("let a = cosh(2)", "1:9-1:13 there is no function `cosh`; did you mean `cos`?"),
+        ("let a = coss(2)", "1:9-1:13 there is no function `coss`; did you mean `cos`?"),
+        ("let a = cosh(2)", "1:9-1:13 there is no function `cosh`: write `(exp(x) + exp(-x)) / 2`"),
         ("let e = (1, 2)\nlet a = e(1)", "2:9-2:10 `e` is a vector: its components are `e.x` and `e.y`"),
         ("let k = 2\nlet a = k(1 + 2)", "2:9-2:10 `k` is no function: to multiply, write `k * (…)`"),
         ("let a = now()", "1:9-1:12 there is no function `now`"),
@@ -701,12 +704,12 @@ fn what_cannot_be_read_is_said() {
         ),
         (
             "let b = 1 [k\u{1}]",
-            "1:11-1:15 there is no unit `k`; there are m, s, rad, deg, °, km, cm, mm, min, ms, and `-` for a number",
+            "1:11-1:15 there is no unit `k`; there are m, s, rad, deg, °, km, cm, mm, h, min, ms, and `-` for a number",
         ),
         ("let b = [\u{1}]", "1:9-1:12 a unit stands behind a number: `1 [m]`"),
         (
             "let b = 1 [\u{1}]",
-            "1:11-1:14 there is no unit `\u{fffd}`; there are m, s, rad, deg, °, km, cm, mm, min, ms, and `-` for a number",
+            "1:11-1:14 there is no unit `\u{fffd}`; there are m, s, rad, deg, °, km, cm, mm, h, min, ms, and `-` for a number",
         ),
         (
             "let bbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbbb = 1",
@@ -715,7 +718,7 @@ fn what_cannot_be_read_is_said() {
         ("let b = 1e999", "1:9-1:14 this number is too large"),
         (
             "let b = 1 [kg]",
-            "1:11-1:15 there is no unit `kg`; there are m, s, rad, deg, °, km, cm, mm, min, ms, and `-` for a number",
+            "1:11-1:15 there is no unit `kg`; there are m, s, rad, deg, °, km, cm, mm, h, min, ms, and `-` for a number",
         ),
         ("let b = 1 [m", "1:11-1:12 the `]` behind the unit is missing"),
         ("let b = [m]", "1:9-1:12 a unit stands behind a number: `1 [m]`"),

@@ -201,14 +201,15 @@ impl<'a> DeclarationReader<'a> {
         if scale == Scale::Logarithmic && low <= 0.0 {
             self.mistake(&joined(at, "range"), "must begin above 0 where it is logarithmic");
         }
-        let [default, low, high] = [default, low, high].map(|number| number * size);
-        if ![default, low, high].iter().all(|number| number.is_finite()) {
+        if ![default, low, high].iter().all(|number| (number * size).is_finite()) {
             self.mistake(at, "has numbers that are too large in m, s and rad");
         }
         Some(Parameter {
             name: name.to_owned(),
             symbol: own_symbol.unwrap_or_else(|| symbol(name)),
             unit,
+            unit_name: unit.name_of(size, keys.get("unit").and_then(Value::as_str).unwrap_or_default()),
+            unit_size: size,
             default,
             range: [low, high],
             scale,
@@ -232,8 +233,12 @@ mod tests {
             "memory": [{"name": "z", "unit": "m/s"}], "shown": [{"name": "e"}]}"#;
         let declaration = declared(text, true).expect("a declaration");
         let [own] = &declaration.parameters[..] else { panic!("one parameter") };
-        assert_eq!((own.symbol.as_str(), own.unit.to_string().as_str()), ("ε", "rad"));
-        assert_eq!([own.default, own.range[1]], [std::f64::consts::FRAC_PI_2, std::f64::consts::PI]);
+        assert_eq!(
+            (own.symbol.as_str(), own.unit.to_string().as_str(), own.behind().as_str()),
+            ("ε", "rad", " deg")
+        );
+        assert_eq!([own.default, own.range[1]], [90.0, 180.0]);
+        assert_eq!(own.as_told(own.default), std::f64::consts::FRAC_PI_2);
         assert_eq!(declaration.memory, [Quantity { name: "z".to_owned(), unit: Unit::new(1, -1) }]);
         assert!(declaration.continuous && declaration.reads_rates());
         assert_eq!(declaration.reads.len(), 5 + 2 * 18);

@@ -323,7 +323,8 @@ fn edges(words: &mut LabelPlacer<'_>, context: &PictureContext<'_>, window: Wind
     };
     for (_, edge, state) in context.record.pairs(context.fleet) {
         let (Some(a), Some(b)) = (place(edge.leader), place(edge.follower)) else { continue };
-        let degrees = state.relative.bearing.to_degrees().round();
+        // Against the heading that set points are written against.
+        let degrees = vocabulary::wrap(state.relative.bearing + state.behind).to_degrees().round();
         let sign = if degrees < 0.0 { "\u{2212}" } else { "" };
         let place = format!("{:.2} m  {sign}{:.0}°", state.relative.distance, degrees.abs());
         // How far it has filed in.

@@ -66,7 +66,15 @@ pub(crate) fn instead_of<'a>(name: &str, names: impl Iterator<Item = &'a str> + 
 
 /// The end of a message that names the nearest valid word.
 pub(crate) fn did_you_mean(word: &str) -> String {
-    format!(", did you mean `{word}`?")
+    format!(", {MEANT}{word}`?")
+}
+
+/// What stands before a word that may have been meant.
+pub(crate) const MEANT: &str = "did you mean `";
+
+/// The word that a message says may have been meant.
+pub(crate) fn suggested(message: &str) -> Option<&str> {
+    message.split_once(MEANT)?.1.split('`').next()
 }
 
 #[cfg(test)]
@@ -80,6 +88,8 @@ mod tests {
         assert_eq!(told(9), " (known here: `p0`, `p1`, `p2`, `p3`, `p4`, `p5`, `p6`, `p7`, …)");
         assert_eq!(told(8), " (known here: `p0`, `p1`, `p2`, `p3`, `p4`, `p5`, `p6`, `p7`)");
         assert_eq!(told(0), "");
+        assert_eq!(suggested(&told(3)), None);
+        assert_eq!(suggested(&instead_of("p", ["p1"].into_iter())), Some("p1"));
         assert_eq!(instead_of("p", ["p1"].into_iter()), ", did you mean `p1`? (known here: `p1`)");
     }
 }

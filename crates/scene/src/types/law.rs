@@ -129,13 +129,19 @@ impl Law {
         self.custom().map_or(1, |law| law.declaration().leaders)
     }
 
-    /// Values of the custom law's parameters, in the order of its declaration; empty for a built-in law.
+    /// Values of the custom law's parameters, in the order and in the units of its declaration; empty for a built-in law.
     pub fn values(&self) -> Vec<f64> {
         let declared = self.custom().map_or(&[][..], |law| &law.declaration().parameters);
         let value = |parameter: &Parameter| {
             self.parameters.get(&parameter.name).copied().unwrap_or(parameter.default)
         };
         declared.iter().map(value).collect()
+    }
+
+    /// The same in m, s and rad, as the law is told them.
+    pub fn told_values(&self) -> Vec<f64> {
+        let declared = self.custom().map_or(&[][..], |law| &law.declaration().parameters);
+        declared.iter().zip(self.values()).map(|(parameter, value)| parameter.as_told(value)).collect()
     }
 
     /// The gains that fit a kind of vehicle: the paper's for a unicycle; on wheels they were found with `echelon tune`

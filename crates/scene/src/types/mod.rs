@@ -213,6 +213,12 @@ impl Scene {
         self.expect.judging(self.time.duration)
     }
 
+    /// What followers are given that their custom law does not use, in words: gains of the built-in laws, and set points
+    /// that the law does not read.
+    pub fn unused(&self) -> Vec<String> {
+        crate::unused::unused(self)
+    }
+
     /// What of the scene comes after the end of its run and so never takes effect, in words: changes, and expectations
     /// that are judged from a time on.
     pub fn late(&self) -> Vec<String> {

@@ -101,6 +101,8 @@ struct CertifiedStretch {
     measures: bool,
     custom: Option<Custom>,
     fault: Option<LawFaultMetrics>,
+    /// Whether the law is one of the paper's.
+    built_in: bool,
     measured: MeasuredTracking,
     rough_leader: Option<f64>,
     /// Of the bearing's set point, rad/s, where it moves with a path's heading.
@@ -120,6 +122,7 @@ impl CertifiedStretch {
             measures: law.tracker.is_some(),
             custom: law.custom.clone(),
             fault: None,
+            built_in: law.is_built_in(),
             measured: MeasuredTracking::default(),
             rough_leader: None,
             last_rate: None,
@@ -137,6 +140,7 @@ impl CertifiedStretch {
             && self.set_point == law.set_point
             && self.measures == law.tracker.is_some()
             && self.custom == law.custom
+            && self.built_in == law.is_built_in()
     }
 }
 
@@ -230,14 +234,14 @@ impl Examiner {
             held: (self.mode != TimeMode::Continuous).then_some(self.period),
             sampled_measurement: self.mode == TimeMode::Measured,
             measures: stretch.measures,
-            custom: stretch.custom.is_some(),
+            custom: !stretch.built_in,
             wheels: wheels(edge.leader) || wheels(edge.follower),
             several_leaders: several,
             rough_leader: stretch.rough_leader,
         };
         let law = &witness.law;
         let effect = witness.last_effect();
-        let custom = stretch.custom.is_some();
+        let custom = !stretch.built_in;
         let smoothed =
             !custom && law.kind != LawKind::FullState && matches!(law.switching, Switching::Tanh(_));
         Certificate {
@@ -285,8 +289,8 @@ impl Examiner {
         }
         if self.mode == TimeMode::Continuous {
             let Some(above) = above else { return false };
-            let EdgeLaw { law, custom, .. } = &formation.laws()[above];
-            let sign = custom.is_none() && law.kind != LawKind::FullState && law.switching == Switching::Sign;
+            let (built_in, law) = (formation.laws()[above].is_built_in(), &formation.laws()[above].law);
+            let sign = built_in && law.kind != LawKind::FullState && law.switching == Switching::Sign;
             return sign || simulation.record().edges[above].limited;
         }
         let (Some(last), Some(now)) = (self.last.get(edge.leader), drives.get(edge.leader)) else {

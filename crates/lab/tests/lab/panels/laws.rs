@@ -64,7 +64,7 @@ fn the_text_keeps_the_keyboard_through_mistakes() {
         edited
     };
     // A line that begins with a Greek letter is a line like any other.
-    for (text, mistaken) in [("x", true), ("\nε", true), ("# ψ", true), ("(", true)] {
+    for (text, mistaken) in [("\nx", true), ("\nε", true), ("# ψ", true), ("(", true)] {
         let edited = typed(&mut panel, text);
         assert!(edited.contains(text));
         assert_eq!(
@@ -92,13 +92,18 @@ fn laws_of_the_paper_those_that_ship_and_a_new_one_can_be_chosen() {
 #[test]
 fn memory_and_lets_are_curves() {
     let mut panel = panel(custom(30), curves::signals);
-    assert_says(&panel, &["n", "e.x", "e.y", "along", "across"]);
+    assert_says(&panel, &["sum", "e.x", "e.y", "along", "across"]);
     let empty = super::panel(app_state(THREE, 3), curves::signals);
     assert_says(&empty, &["A custom law shows its memory"]);
     assert!(click(&mut panel, Role::Button, "along").is_empty());
-    let curve = lab::quantities::signal_curves(&custom(30), "n", 100);
-    let counted: Vec<f64> = curve[0].points.iter().map(|point| point[1]).collect();
-    assert_eq!((curve.len(), counted.first(), counted.last()), (2, Some(&1.0), Some(&30.0)));
+    // A sum grows by its error times the period from one sample to the next.
+    let [sums, errors] = ["sum", "e.x"].map(|name| lab::quantities::signal_curves(&custom(30), name, 100));
+    let values = |at: usize, of: &[lab::quantities::QuantityCurve]| of[0].points[at][1];
+    assert_eq!((sums.len(), sums[0].points.len(), errors[0].points.len()), (2, 30, 30));
+    for at in 1..30 {
+        let grown = values(at, &sums) - values(at - 1, &sums);
+        assert!((grown - 0.01 * values(at, &errors)).abs() < 1e-12, "{at}");
+    }
 }
 
 #[test]

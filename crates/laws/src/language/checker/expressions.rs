@@ -454,6 +454,11 @@ impl<'a> Checker<'a, '_> {
             if let (ExpressionKind::Number(value, None), Typed::Number(other)) = (&this.0.kind, other.1) {
                 message = format!("{message}; with a unit it is `{value} [{}]`", other.unit);
             }
+            if let (Typed::Number(_), Typed::Vector(_)) = (this.1, other.1) {
+                let quoted = self.quote(this.0);
+                let quoted = quoted.trim_matches('`');
+                message = format!("{message}; for both components write `({quoted}, {quoted})`");
+            }
         }
         self.mistake(at, message)
     }

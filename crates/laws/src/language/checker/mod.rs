@@ -334,6 +334,8 @@ impl Checker<'_, '_> {
                 name: parameter.name.to_owned(),
                 symbol: parameter.symbol.map_or_else(|| symbol(parameter.name), str::to_owned),
                 unit: parameter.unit,
+                unit_name: parameter.unit_name.clone(),
+                unit_size: parameter.unit_size,
                 default: parameter.default,
                 range: parameter.range,
                 scale: parameter.scale,

@@ -338,13 +338,16 @@ impl<'a> Parser<'a, '_> {
         self.expect("=")?;
         let default_at = self.here();
         let default = self.signed()?;
-        let (unit, scale) = self.unit().unwrap_or((Unit::NUMBER, 1.0));
+        let written = if let TokenKind::Unit(text) = self.kind() { text } else { "" };
+        let (unit, size) = self.unit().unwrap_or((Unit::NUMBER, 1.0));
         let default_at = self.since(default_at);
         let mut parameter = ParameterSyntax {
             name,
             at,
             unit,
-            default: default * scale,
+            unit_name: unit.name_of(size, written),
+            unit_size: size,
+            default,
             range: [0.0; 2],
             scale: Scale::Linear,
             help: "",
@@ -361,7 +364,7 @@ impl<'a> Parser<'a, '_> {
                 self.expect("..")?;
                 let high = self.signed()?;
                 if let Some(other) = self.unit()
-                    && other != (unit, scale)
+                    && other != (unit, size)
                 {
                     self.mistake(
                         self.since(from),
@@ -375,7 +378,7 @@ impl<'a> Parser<'a, '_> {
                     self.mistake(default_at, format!("{default} is not in the range {low} .. {high}"));
                 }
                 range = Some((low, at));
-                parameter.range = [low * scale, high * scale];
+                parameter.range = [low, high];
             } else if self.is_word("log") {
                 parameter.scale = Scale::Logarithmic;
             } else if self.is_word("symbol") {

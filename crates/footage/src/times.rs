@@ -1,15 +1,18 @@
-//! Times on the command line: one rule for all of them.
+//! Times of pictures: one rule for all of them.
 
-use crate::failure::Failure;
+use crate::error::Error;
 
 /// Times no further apart than this are one, s: a sample's time carries the rounding of its multiplication.
 const SAME: f64 = 1e-9;
 
 /// The times asked for, in order, each once; the end of the run if none. What is past the end by rounding is the end.
-pub(crate) fn within(asked: &[f64], duration: f64) -> Result<Vec<f64>, Failure> {
+///
+/// # Errors
+/// [`Error::Usage`] for a time that is not in the run.
+pub fn within(asked: &[f64], duration: f64) -> Result<Vec<f64>, Error> {
     let inside = |t: &f64| (-SAME..=duration + SAME).contains(t);
     if let Some(bad) = asked.iter().find(|t| !inside(t)) {
-        return Err(Failure::Usage(format!(
+        return Err(Error::Usage(format!(
             "{bad} s is not within the run: times are from 0 to {} s",
             shown(duration)
         )));
@@ -25,13 +28,13 @@ pub(crate) fn within(asked: &[f64], duration: f64) -> Result<Vec<f64>, Failure> 
 }
 
 /// A time in s as text, without the rounding of a multiplication.
-pub(crate) fn shown(time: f64) -> String {
+pub fn shown(time: f64) -> String {
     let text = format!("{time:.9}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// A time as files are named by it, s: `002.500`, and as many more digits as tell it from all others.
-pub(crate) fn in_names(time: f64) -> String {
+pub fn in_names(time: f64) -> String {
     let text = format!("{time:013.9}");
     let (whole, part) = text.split_once('.').unwrap_or((&text, ""));
     let digits = part.trim_end_matches('0').len().max(3);

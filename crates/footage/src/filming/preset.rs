@@ -1,22 +1,23 @@
 //! Ready-made ways to film a scene, for those who have no storyboard.
 
-use clap::ValueEnum;
 use scene::{Film, Plot, Shot};
+use vocabulary::words;
 
-/// What a film is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Preset {
-    /// For a talk: 1920x1080, title, three views, errors beside the second, end card
-    Talk,
-    /// For the supplement of a paper: 1280x720, no cards, errors and speeds beside snake view and top view
-    Paper,
-    /// For a phone: 1080x1920, snake view over top view, errors below, title and end card, half a minute at most
-    Social,
+words! {
+    /// What a film is for.
+    pub enum Preset {
+        /// For a talk: 1920x1080, title, three views, errors beside the second, end card
+        Talk = "talk",
+        /// For the supplement of a paper: 1280x720, no cards, errors and speeds beside snake view and top view
+        Paper = "paper",
+        /// For a phone: 1080x1920, snake view over top view, errors below, title and end card, half a minute at most
+        Social = "social",
+    }
 }
 
 impl Preset {
     /// Sets measures and cards; and, where the scene has no storyboard, the shots of a run of `duration` s.
-    pub(crate) fn apply(self, film: &mut Film, duration: f64) {
+    pub(super) fn apply(self, film: &mut Film, duration: f64) {
         let (size, cards, most) = match self {
             Self::Talk => ([1920, 1080], [2.5, 4.0], 45.0),
             Self::Paper => ([1280, 720], [0.0, 0.0], 60.0),

@@ -1,16 +1,17 @@
 //! A run at any time: the moments between two control samples are interpolated, and the past is remembered.
 
-use crate::failure::Failure;
-use crate::interrupt;
+use crate::error::Error;
 use metrics::{Metrics, MetricsBuilder};
 use rendering::Trail;
 use studies::RecordSource;
 use vocabulary::{FleetInfo, Judging, StepRecord};
 
 /// A source that is asked for growing times.
-pub(crate) struct Playback {
+pub struct Playback<'a> {
     source: RecordSource,
-    fault: Option<Failure>,
+    /// Whether the work is to stop.
+    stops: &'a dyn Fn() -> bool,
+    fault: Option<Error>,
     trail: Trail,
     before: StepRecord,
     after: StepRecord,
@@ -19,12 +20,13 @@ pub(crate) struct Playback {
     metrics: Option<Box<MetricsBuilder>>,
 }
 
-impl Playback {
-    /// At time 0 of a run by `fleet`.
-    pub(crate) fn new(fleet: &FleetInfo, source: RecordSource) -> Self {
+impl<'a> Playback<'a> {
+    /// At time 0 of a run by `fleet`; it goes no further once it `stops`.
+    pub fn new(fleet: &FleetInfo, source: RecordSource, stops: &'a dyn Fn() -> bool) -> Self {
         let (before, after) = (StepRecord::default(), StepRecord::default());
         let mut playback = Self {
             source,
+            stops,
             fault: None,
             trail: Trail::new(fleet),
             before,
@@ -38,14 +40,15 @@ impl Playback {
     }
 
     /// Measures what goes by, from the first moment on.
-    pub(crate) fn measured(mut self, mut metrics: MetricsBuilder) -> Self {
+    #[must_use]
+    pub fn measured(mut self, mut metrics: MetricsBuilder) -> Self {
         metrics.push(&self.after);
         self.metrics = Some(Box::new(metrics));
         self
     }
 
     /// What was measured so far.
-    pub(crate) fn metrics(&self) -> Metrics {
+    pub fn metrics(&self) -> Metrics {
         let nothing = || MetricsBuilder::new(&FleetInfo::default(), Judging::NONE).finish();
         self.metrics.as_ref().map_or_else(nothing, |metrics| metrics.finish())
     }
@@ -68,9 +71,9 @@ impl Playback {
     }
 
     /// The moment at `time` s, not before the last one asked for; the last moment of the run after its end; an
-    /// earlier one where the program has been asked to stop.
-    pub(crate) fn at(&mut self, time: f64) -> StepRecord {
-        while self.after.snapshot.time < time && !interrupt::asked() {
+    /// earlier one where the work is to stop.
+    pub fn at(&mut self, time: f64) -> StepRecord {
+        while self.after.snapshot.time < time && !(self.stops)() {
             std::mem::swap(&mut self.before, &mut self.after);
             if !self.step() {
                 std::mem::swap(&mut self.before, &mut self.after);
@@ -84,17 +87,20 @@ impl Playback {
     }
 
     /// When the run ended, s, if all of it has been asked for.
-    pub(crate) fn ended(&self) -> Option<f64> {
+    pub fn ended(&self) -> Option<f64> {
         self.ended.then_some(self.after.snapshot.time)
     }
 
     /// Fails where the cameras on robots could not take their pictures, or the recording is damaged.
-    pub(crate) fn check(&mut self) -> Result<(), Failure> {
+    ///
+    /// # Errors
+    /// What broke off, once.
+    pub fn check(&mut self) -> Result<(), Error> {
         self.fault.take().map_or(Ok(()), Err)
     }
 
     /// What has been.
-    pub(crate) fn trail(&self) -> &Trail {
+    pub fn trail(&self) -> &Trail {
         &self.trail
     }
 }

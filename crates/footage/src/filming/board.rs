@@ -1,7 +1,7 @@
 //! The storyboard as frames: which moment of the run a frame shows, from where, and with what beside it.
 
 use super::words::set_point_rows;
-use crate::failure::Failure;
+use crate::error::Error;
 use rendering::{ViewLayout, Viewpoint};
 use scene::{Film, Plot, Shot};
 
@@ -50,13 +50,13 @@ impl Board {
         view: &str,
         duration: f64,
         names: &[String],
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         if let Some(view) = whole {
             let shot = Shot { to: Some(duration), ..Shot::default() };
             return Ok(Self { cuts: vec![Cut::new(shot, view, names)?], title: 0.0, end: 0.0 });
         }
         if let Some(beyond) = film.beyond(duration) {
-            return Err(Failure::Usage(beyond));
+            return Err(Error::Usage(beyond));
         }
         let shots = match film.shots.as_slice() {
             [] => vec![Shot { to: Some(duration), ..Shot::default() }],
@@ -122,7 +122,7 @@ impl Board {
 }
 
 impl Cut {
-    fn new(shot: Shot, view: &str, names: &[String]) -> Result<Self, Failure> {
+    fn new(shot: Shot, view: &str, names: &[String]) -> Result<Self, Error> {
         let layout = ViewLayout::parse(view, names)?;
         let (from, to) = (shot.from.unwrap_or(0.0), shot.to.unwrap_or(0.0));
         Ok(Self { from, to, shot, layout, glides_from: None })

@@ -1,0 +1,52 @@
+"""A 3D laboratory for vehicle formations.
+
+A scene describes robots, who follows whom, the control law, sensors and the world. `Scene.load` reads one, `Scene.run`
+simulates it to its end, `Scene.simulation` step by step.
+
+>>> import echelon
+>>> run = echelon.Scene.load("circle-three").run()
+>>> run.status
+'complete'
+
+Lengths are in m, angles in rad, times in s. Bearings are taken from the leader's heading, counter-clockwise.
+"""
+
+from ._echelon import EDGE_COLUMNS, INPUTS, ROBOT_COLUMNS, SIGNALS, Run, Scene, Simulation, Table, __version__, scenes
+from ._errors import (
+    BusyError,
+    EchelonError,
+    EndOfRunError,
+    LawError,
+    RenderingError,
+    RunError,
+    SceneError,
+    SceneFault,
+)
+from ._film import Film
+from ._law import Law, Observations
+from ._run import Expectation
+
+__all__ = [
+    "EDGE_COLUMNS",
+    "INPUTS",
+    "ROBOT_COLUMNS",
+    "SIGNALS",
+    "BusyError",
+    "EchelonError",
+    "EndOfRunError",
+    "Expectation",
+    "Film",
+    "Law",
+    "LawError",
+    "Observations",
+    "RenderingError",
+    "Run",
+    "RunError",
+    "Scene",
+    "SceneError",
+    "SceneFault",
+    "Simulation",
+    "Table",
+    "__version__",
+    "scenes",
+]
