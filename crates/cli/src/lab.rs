@@ -1,10 +1,13 @@
 //! `echelon lab`: the window.
 
+use crate::Outcome;
 use crate::args::{AdapterArgs, size};
 use crate::failure::Failure;
-use crate::{Outcome, interrupt};
+#[cfg(feature = "lab")]
+use crate::interrupt;
 use clap::Args;
 use scene::Override;
+#[cfg(feature = "lab")]
 use signal_hook::low_level;
 use std::path::PathBuf;
 
@@ -30,6 +33,16 @@ pub(crate) struct LabArgs {
     timings: bool,
 }
 
+/// A program without the window says where it is to be had.
+#[cfg(not(feature = "lab"))]
+pub(crate) fn lab(_: LabArgs) -> Outcome {
+    let text =
+        "this program was built without its window: build it with the feature `lab`, which is on by default";
+    Err(Failure::Usage(text.to_owned()))
+}
+
+/// Opens the window, and waits until it is closed.
+#[cfg(feature = "lab")]
 pub(crate) fn lab(args: LabArgs) -> Outcome {
     interrupt::watch();
     let options = lab::Options {
@@ -49,6 +62,7 @@ pub(crate) fn lab(args: LabArgs) -> Outcome {
 }
 
 /// Ends the process as [`lab()`] would have failed: the window library leaves no way back to it.
+#[cfg(feature = "lab")]
 fn abandon(reason: &str) {
     let failure = Failure::Machine(reason.to_owned());
     failure.tell();

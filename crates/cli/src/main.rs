@@ -20,6 +20,7 @@ mod lab;
 mod laws;
 mod link;
 mod load;
+mod manuals;
 mod print;
 mod program;
 mod progress;
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
                 | Subcommands::Laws(_)
                 | Subcommands::Schema
                 | Subcommands::Completions { .. }
+                | Subcommands::Manuals(_)
         )
     ) {
         quiet::restart_if_needed();
@@ -89,6 +91,7 @@ fn main() -> ExitCode {
             print::completions(shell);
             Ok(())
         }
+        Some(Subcommands::Manuals(args)) => manuals::manuals(&args),
     };
     let lost = || Failure::Machine("standard output could not be written".to_owned());
     let outcome = outcome.and_then(|()| if print::lost() { Err(lost()) } else { Ok(()) });

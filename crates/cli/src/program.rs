@@ -2,7 +2,7 @@
 
 use crate::{
     accuracy, budget, capture, certify, check, compare, dataset, diff, doctor, figures, film, lab, laws,
-    link, replay, run, scenes, stills, tune,
+    link, manuals, replay, run, scenes, stills, tune,
 };
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
@@ -65,6 +65,8 @@ pub(crate) enum Subcommands {
         /// The shell
         shell: Shell,
     },
+    /// Write manual pages: echelon manuals share/man/man1
+    Manuals(manuals::ManualsArgs),
 }
 
 #[cfg(test)]
