@@ -315,3 +315,30 @@ fn what_is_replaced_is_told() {
         assert!(code == 0 && err.is_empty(), "{args:?}: {err}");
     }
 }
+
+#[test]
+fn there_is_a_manual_page_for_every_subcommand() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (code, _, err) = told(&echelon(folder.path(), &["manuals", "man/man1"]));
+    assert_eq!(code, 0, "{err}");
+    let page = |name: &str| {
+        let path = folder.path().join(format!("man/man1/{name}.1"));
+        fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    };
+    let (_, help, _) = told(&echelon(folder.path(), &["--help"]));
+    let commands = help.lines().skip_while(|line| !line.starts_with("Commands:")).skip(1);
+    let commands = commands
+        .take_while(|line| !line.is_empty())
+        .filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    let names: Vec<&str> = commands.filter_map(|line| line.split_whitespace().next()).collect();
+    assert!(names.len() > 15, "{names:?}");
+    let whole = page("echelon");
+    for name in names.into_iter().filter(|name| *name != "help") {
+        assert!(whole.contains(&format!("echelon\\-{name}(1)")), "{name}");
+        assert!(page(&format!("echelon-{name}")).contains(".SH SYNOPSIS"), "{name}");
+    }
+    assert!(page("echelon-laws-test").contains("turn"), "subcommands of subcommands have pages, too");
+    fs::write(folder.path().join("file"), "").expect("a file");
+    let (code, _, err) = told(&echelon(folder.path(), &["manuals", "file"]));
+    assert!(code == 3 && err.contains("cannot write to file"), "{err}");
+}
