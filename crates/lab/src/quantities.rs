@@ -82,6 +82,17 @@ impl PlotQuantity {
     pub fn logarithmic(self) -> bool {
         matches!(self, Self::TrackingEnergy | Self::ObserverEnergy)
     }
+
+    /// Whether few samples may be far from all others.
+    pub fn is_spiky(self) -> bool {
+        !matches!(self, Self::DistanceError | Self::BearingError | Self::Clearance)
+    }
+
+    /// Whether its curve keeps every spike: on a linear axis the plot names the largest. The quantities of certificates are
+    /// made of so many numbers that they have no more samples than are drawn.
+    fn keeps_spikes(self) -> bool {
+        self.is_spiky() && !self.logarithmic() && !matches!(self, Self::RobustMargin | Self::Lyapunov)
+    }
 }
 
 /// A curve of one robot on one branch.
@@ -111,11 +122,10 @@ pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<
             all.push(QuantityCurve { branch, robot: None, points });
             continue;
         }
-        // Commands have spikes of a sample or two, which no curve may leave out.
-        let spiky = matches!(quantity, PlotQuantity::Acceleration | PlotQuantity::TurnRate);
-        let records = history.between(branch, span, if spiky { usize::MAX } else { most });
+        let whole = quantity.keeps_spikes();
+        let records = history.between(branch, span, if whole { usize::MAX } else { most });
         if let Some(value) = filtered(quantity) {
-            all.extend(filter_curves(branch, &records, value));
+            all.extend(filter_curves(branch, &records, value, most));
             continue;
         }
         for (edge, ends) in history.fleet().edges.iter().enumerate() {
@@ -126,14 +136,14 @@ pub fn curves(app_state: &AppState, quantity: PlotQuantity, most: usize) -> Vec<
             };
             let points = certified(quantity, &records, edge, *ends, follow)
                 .unwrap_or_else(|| records.iter().filter_map(point).collect());
-            let points = if spiky { with_extremes(&points, most) } else { points };
+            let points = if whole { with_extremes(&points, most) } else { points };
             all.push(QuantityCurve { branch, robot: Some(ends.follower), points });
         }
         if quantity == PlotQuantity::Speed {
             for (robot, _) in history.fleet().robots.iter().enumerate().filter(|(_, member)| member.leads) {
                 let speed =
                     |m: &&StepRecord| Some([m.snapshot.time, m.snapshot.robots.get(robot)?.motion.speed]);
-                let points = records.iter().filter_map(speed).collect();
+                let points = with_extremes(&records.iter().filter_map(speed).collect::<Vec<_>>(), most);
                 all.push(QuantityCurve { branch, robot: Some(robot), points });
             }
         }
@@ -155,6 +165,7 @@ fn filter_curves(
     branch: usize,
     records: &[&StepRecord],
     value: fn(&SafetyState) -> Option<f64>,
+    most: usize,
 ) -> Vec<QuantityCurve> {
     let robots: BTreeSet<usize> =
         records.iter().flat_map(|record| &record.safety).map(|state| state.robot).collect();
@@ -165,7 +176,7 @@ fn filter_curves(
             Some([record.snapshot.time, value(state)?])
         };
         let points: Vec<_> = records.iter().map(point).collect();
-        all.extend(stretches(branch, robot, &points));
+        all.extend(stretches(branch, robot, &points, most));
     }
     all
 }
@@ -194,11 +205,7 @@ pub fn signal_curves(app_state: &AppState, name: &str, most: usize) -> Vec<Quant
                 law.value(name).filter(|value| value.is_finite()).map(|value| [record.snapshot.time, value])
             };
             let points: Vec<_> = records.iter().map(point).collect();
-            let share = |curve: QuantityCurve| {
-                let most = (most * curve.points.len()).div_ceil(points.len().max(1));
-                QuantityCurve { points: with_extremes(&curve.points, most), ..curve }
-            };
-            all.extend(stretches(branch, robot, &points).map(share));
+            all.extend(stretches(branch, robot, &points, most));
         }
     }
     all
@@ -234,17 +241,19 @@ fn branches(app_state: &AppState, history: &History) -> Vec<(usize, [f64; 2])> {
     others.chain([app_state.branch]).map(span).collect()
 }
 
-/// A curve for every stretch in which there is a value.
+/// A curve for every stretch in which there is a value; all together have about `most` points.
 fn stretches(
     branch: usize,
     robot: usize,
     points: &[Option<[f64; 2]>],
+    most: usize,
 ) -> impl Iterator<Item = QuantityCurve> {
     let all = points.split(Option::is_none).filter(|stretch| !stretch.is_empty());
-    all.map(move |stretch| QuantityCurve {
-        branch,
-        robot: Some(robot),
-        points: stretch.iter().flatten().copied().collect(),
+    let count = points.len();
+    all.map(move |stretch| {
+        let own: Vec<[f64; 2]> = stretch.iter().flatten().copied().collect();
+        let share = (most * own.len()).div_ceil(count);
+        QuantityCurve { branch, robot: Some(robot), points: with_extremes(&own, share) }
     })
 }
 

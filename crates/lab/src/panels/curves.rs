@@ -23,15 +23,11 @@ pub fn show(ui: &mut Ui, app_state: &AppState, quantities: &[PlotQuantity], out:
     let gap = ui.spacing().item_spacing.y;
     let high = (ui.available_height() - gap * (quantities.len() - 1) as f32) / quantities.len() as f32;
     for (row, quantity) in quantities.iter().enumerate() {
-        let spiky = !matches!(
-            quantity,
-            PlotQuantity::DistanceError | PlotQuantity::BearingError | PlotQuantity::Clearance
-        );
         let plotted = PlottedCurves {
             id: quantity.column().to_owned(),
             axis: quantity.axis().to_owned(),
             logarithmic: quantity.logarithmic(),
-            spiky,
+            spiky: quantity.is_spiky(),
             bounds: bounds(app_state, *quantity),
             curves: curves(app_state, *quantity, MOST_POINTS),
         };

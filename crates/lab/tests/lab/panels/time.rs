@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use lab::action::Action;
 use lab::app_state::AppState;
 use lab::panels::{curves, time_bar};
-use lab::quantities::{PlotQuantity, csv};
+use lab::quantities::{self, PlotQuantity, csv};
 
 fn bar(app_state: AppState, filming: bool) -> Panel {
     let mut bar = panel(app_state, move |ui, app_state, out| time_bar::show(ui, app_state, filming, out));
@@ -189,4 +189,27 @@ fn curves_are_those_of_the_run() {
     let count = twice.len();
     twice.dedup();
     assert_eq!(twice.len(), count, "no row twice");
+}
+
+/// A plot of a long run names the largest value of all samples, not of those that it has room for.
+#[test]
+fn thinned_curves_keep_the_largest_command_and_the_largest_error_of_the_observer() {
+    let state = app_state(THREE, 1400);
+    let largest = |quantity, most| {
+        let all = quantities::curves(&state, quantity, most);
+        all.iter().flat_map(|curve| &curve.points).map(|point| point[1].abs()).fold(0.0, f64::max)
+    };
+    for quantity in [
+        PlotQuantity::Acceleration,
+        PlotQuantity::TurnRate,
+        PlotQuantity::Speed,
+        PlotQuantity::DistanceRateError,
+        PlotQuantity::BearingRateError,
+    ] {
+        let whole = largest(quantity, usize::MAX);
+        assert!(whole > 0.0);
+        assert_eq!(largest(quantity, 100), whole, "{quantity:?}");
+        let drawn = quantities::curves(&state, quantity, 100);
+        assert!(drawn.iter().all(|curve| curve.points.len() <= 101), "{quantity:?}");
+    }
 }
