@@ -1,0 +1,129 @@
+//! From a request to a plan: checks, search, smoothing, speeds.
+
+use crate::error::InputError;
+use crate::leg::Leg;
+use crate::mission::{Mission, PlanGoal, PlanRequest, PlanStart};
+use crate::offer::{NoWay, NoWayReason, blocked_by, why_not, with_offer};
+use crate::plan::MotionPlan;
+use crate::search::search;
+use crate::smooth::smoothed;
+use crate::trailing::{Blocked, Sweep, Trailing};
+use thiserror::Error;
+
+/// Why there is no plan.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum PlanError {
+    /// The request makes no sense.
+    #[error(transparent)]
+    Input(#[from] InputError),
+    /// It has no way.
+    #[error(transparent)]
+    NoWay(Box<NoWay>),
+}
+
+/// Plans a way. `stop` is asked now and then whether to go on, with the number of steps swept so far: what has been found
+/// by then is the plan.
+///
+/// # Errors
+/// The request makes no sense, or there is no way: then with the reason, what there is a way for, and the gap in the way.
+pub fn plan(request: &PlanRequest<'_>, stop: &mut dyn FnMut(usize) -> bool) -> Result<MotionPlan, PlanError> {
+    request.mission.check(request.model, &request.limits)?;
+    request.effort.check()?;
+    let no_way = |no_way: NoWay| PlanError::NoWay(Box::new(no_way));
+    let trailing = Trailing::new(request.model, &request.limits);
+    if let Some(reason) = at_the_ends(request, &trailing) {
+        let starts = matches!(reason, NoWayReason::StartBlocked { robot, .. } if robot > 0);
+        return Err(no_way(if starts { with_offer(request, reason, stop) } else { NoWay::because(reason) }));
+    }
+    let outcome = search(request, &trailing, stop);
+    let Some(way) = outcome.way else {
+        let mut found = why_not(request, outcome.ended, stop);
+        found.expansions += outcome.expansions;
+        return Err(no_way(found));
+    };
+    let (legs, changed) =
+        if request.effort.smooths { smooth(request, &trailing, &way.legs) } else { (way.legs, false) };
+    let mut plan = MotionPlan::along(request, &trailing, legs);
+    plan.searched_cost = way.cost;
+    plan.expansions = outcome.expansions;
+    plan.smoothed = changed;
+    plan.tried = outcome.tried;
+    Ok(plan)
+}
+
+/// Plans a way over several goals, at each of which the formation stops; a plan for each. Followers are taken to hold their
+/// places behind a straight way where one begins.
+///
+/// # Errors
+/// There are no goals, or one has no way: with its number.
+pub fn plan_tour(
+    request: &PlanRequest<'_>,
+    goals: &[PlanGoal],
+    stop: &mut dyn FnMut(usize) -> bool,
+) -> Result<Vec<MotionPlan>, TourError> {
+    if goals.is_empty() {
+        return Err(TourError { goal: 0, error: InputError::NoGoals.into() });
+    }
+    let mut start = request.mission.start;
+    let mut plans = vec![];
+    for (goal, to) in goals.iter().enumerate() {
+        let request = PlanRequest { mission: Mission { start, goal: *to }, ..*request };
+        let found = plan(&request, stop).map_err(|error| TourError { goal, error })?;
+        if let Some(end) = found.points.last() {
+            start = PlanStart { level: end.level.round() as usize, ..PlanStart::at(end.pose) };
+        }
+        plans.push(found);
+    }
+    Ok(plans)
+}
+
+/// Why a tour has no plan.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("goal {goal} of the tour: {error}")]
+pub struct TourError {
+    /// Number of the goal, from 0.
+    pub goal: usize,
+    /// Why there is no way to it.
+    pub error: PlanError,
+}
+
+/// What is wrong with the start or the goal, whatever lies between.
+fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayReason> {
+    let PlanRequest { map, model, mission, limits, .. } = request;
+    let (start, goal) = (mission.start, mission.goal);
+    if map.ground().distance([start.pose.x, start.pose.y]) > 0.0 {
+        return Some(NoWayReason::StartOutside);
+    }
+    if map.ground().distance(goal.position) > 0.0 {
+        return Some(NoWayReason::GoalOutside);
+    }
+    let mut sweep = Sweep::new(map, trailing, limits);
+    let convoy = trailing.steady(start.pose, start.curvature, start.level as f64);
+    if let Err(Blocked::Touches { robot, .. }) = sweep.begin(&convoy) {
+        let (_, by) = map.nearest(convoy.positions[robot]);
+        return Some(NoWayReason::StartBlocked { robot, by });
+    }
+    let need = model.body(0).core() + map.clearance() - goal.tolerance;
+    blocked_by(map, goal.position, need).map(|by| NoWayReason::GoalBlocked { by })
+}
+
+/// Smooths leg by leg: each ends where it ended, so that the next one stays as it is.
+fn smooth(request: &PlanRequest<'_>, trailing: &Trailing, legs: &[Leg]) -> (Vec<Leg>, bool) {
+    let mut sweep = Sweep::new(request.map, trailing, &request.limits);
+    let start = request.mission.start;
+    let mut convoy = trailing.steady(start.pose, start.curvature, start.level as f64);
+    let mut changed = false;
+    let smooth = legs.iter().map(|leg| {
+        let found = smoothed(request, &mut sweep, &convoy, leg);
+        changed |= found.is_some();
+        let leg = found.unwrap_or_else(|| leg.clone());
+        for piece in leg.pieces(crate::trailing::STEP) {
+            for robot in 0..trailing.robots() {
+                trailing.step(&mut convoy, robot, &piece);
+            }
+        }
+        leg
+    });
+    let legs = smooth.collect();
+    (legs, changed)
+}
