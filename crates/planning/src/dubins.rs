@@ -82,8 +82,8 @@ impl Normalized {
     /// Turns and parts in radii of a kind, if it exists.
     fn path(&self, kind: usize) -> Option<([f64; 3], [f64; 3])> {
         match kind {
-            0 => self.outer(LEFT),
-            1 => self.outer(RIGHT),
+            0 => Some(self.outer(LEFT)),
+            1 => Some(self.outer(RIGHT)),
             2 => self.inner(LEFT),
             3 => self.inner(RIGHT),
             4 => self.three_turns(LEFT),
@@ -92,7 +92,7 @@ impl Normalized {
     }
 
     /// LSL or RSR. A way that turns right is the mirror image of one that turns left.
-    fn outer(&self, side: f64) -> Option<([f64; 3], [f64; 3])> {
+    fn outer(&self, side: f64) -> ([f64; 3], [f64; 3]) {
         let [sa, sb] = self.sines.map(|sine| side * sine);
         let [ca, cb] = self.cosines;
         let [along, across] = [self.distance + sa - sb, cb - ca];
@@ -102,7 +102,7 @@ impl Normalized {
             (along * along + across * across).sqrt(),
             turned(side * self.beta - line),
         ];
-        Some(([side, STRAIGHT, side], parts))
+        ([side, STRAIGHT, side], parts)
     }
 
     /// LSR or RSL.
@@ -239,9 +239,9 @@ mod tests {
                 for _ in 0..60 {
                     let middle = 0.5 * (low + high);
                     if tried(low).misses.signum() == tried(middle).misses.signum() {
-                        low = middle
+                        low = middle;
                     } else {
-                        high = middle
+                        high = middle;
                     }
                 }
                 least = least.min(tried(high).length);

@@ -17,13 +17,13 @@ impl FixedFrame {
     }
 
     /// [forward, left] of a point of the world, m.
-    pub(crate) fn from_world(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn inside(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [dx, dy] = [x - self.origin.x, y - self.origin.y];
         [self.cos * dx + self.sin * dy, self.cos * dy - self.sin * dx]
     }
 
     /// The point of the world at [forward, left], m.
-    pub(crate) fn to_world(self, [forward, left]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn outside(self, [forward, left]: [f64; 2]) -> [f64; 2] {
         [
             self.origin.x + self.cos * forward - self.sin * left,
             self.origin.y + self.sin * forward + self.cos * left,

@@ -55,7 +55,7 @@ const NEAR: f64 = 8.0;
 impl Heuristic {
     pub(crate) fn new(map: &Map, setup: &HeuristicSetup) -> Self {
         let frame = FixedFrame::new(setup.frame);
-        let corners: Vec<_> = map.ground().corners().map(|corner| frame.from_world(corner)).collect();
+        let corners: Vec<_> = map.ground().corners().map(|corner| frame.inside(corner)).collect();
         let [low, high] = crate::convex::box_of(&corners);
         let extent = (high[0] - low[0]).max(high[1] - low[1]);
         let cell = CELL.max(extent / CELLS_MOST);
@@ -118,7 +118,7 @@ impl Heuristic {
     }
 
     fn square(&self, point: [f64; 2]) -> Option<usize> {
-        let place = self.frame.from_world(point);
+        let place = self.frame.inside(point);
         let [c, r] = [0, 1].map(|k| (place[k] - self.low[k]) / self.cell);
         let inside = c >= 0.0 && r >= 0.0 && c < self.size[0] as f64 && r < self.size[1] as f64;
         inside.then(|| r as usize * self.size[0] + c as usize)
@@ -127,7 +127,7 @@ impl Heuristic {
     fn middle(&self, square: usize) -> [f64; 2] {
         let [c, r] = [square % self.size[0], square / self.size[0]];
         let [x, y] = [0, 1].map(|k| self.low[k] + ([c, r][k] as f64 + 0.5) * self.cell);
-        self.frame.to_world([x, y])
+        self.frame.outside([x, y])
     }
 
     /// Way left around obstacles, m; infinite where there is none.

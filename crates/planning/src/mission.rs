@@ -143,10 +143,10 @@ impl Default for SearchEffort {
         Self {
             expansions: 60_000,
             improvement: 2_000,
-            weights: [2.0, 1.3],
-            step: 1.0,
-            cell: 0.5,
-            headings: 72,
+            weights: [1.8, 1.5],
+            step: 1.25,
+            cell: 0.6,
+            headings: 60,
             smooths: true,
         }
     }

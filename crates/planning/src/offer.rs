@@ -54,7 +54,7 @@ pub enum NoWayReason {
     #[error("no way at the heading asked for: there is one to the same place at another")]
     HeadingUnreachable,
     /// The formation does not get there.
-    #[error("no way for {robots} robots{}", unproven(.proven))]
+    #[error("no way for {}{}", vocabulary::counted(.robots, "robot"), unproven(*.proven))]
     TooWide {
         /// How many they are.
         robots: usize,
@@ -79,8 +79,8 @@ pub struct Offer {
     pub legs: Vec<Leg>,
 }
 
-fn unproven(proven: &bool) -> &'static str {
-    if *proven { "" } else { " was found: the search used up its effort" }
+fn unproven(proven: bool) -> &'static str {
+    if proven { "" } else { " was found: the search used up its effort" }
 }
 
 impl NoWay {

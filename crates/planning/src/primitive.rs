@@ -90,7 +90,7 @@ fn is_taken(units: f64, reach: f64) -> bool {
     let size = units.abs().round() as i64;
     let most = reach.floor().max(1.0) as i64;
     let fine = (units - units.round()).abs() > 1e-6;
-    fine || size <= 1 || (1..=CHANGES - 1).any(|k| size == most * k / (CHANGES - 1))
+    fine || size <= 1 || (1..CHANGES).any(|k| size == most * k / (CHANGES - 1))
 }
 
 impl Primitive {

@@ -13,8 +13,7 @@ use crate::search::{cost_of, join, with_levels};
 use crate::shot::{ShotStart, Turning, shot};
 use crate::trailing::{Convoy, Sweep, Trailing};
 use crate::trial::Draws;
-use std::f64::consts::PI;
-use vocabulary::{Pose, wrap};
+use vocabulary::{Pose, math, wrap};
 
 /// How RRT* goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +54,8 @@ struct RandomTree<'a> {
     nodes: Vec<TreeNode>,
 }
 
+/// Headings that are drawn are off the line from the nearest node by up to this, rad: few others can be reached.
+const AWRY: f64 = 0.8;
 /// Weight of headings in the choice of near nodes, m per rad.
 const HEADING: f64 = 2.0;
 
@@ -102,11 +103,11 @@ pub fn rrt_star(request: &PlanRequest<'_>, effort: &RrtEffort) -> Option<MotionP
 impl RandomTree<'_> {
     fn draw(&self, draws: &mut Draws, at_goal: bool) -> (Pose, usize) {
         let (goal, ground) = (self.request.mission.goal, self.request.map.ground());
-        let heading = draws.between(-PI, PI);
+        let heading = draws.between(-AWRY, AWRY);
         let any =
             (draws.between(0.0, self.trailing.levels() as f64) as usize).min(self.trailing.levels() - 1);
         if at_goal {
-            return (goal.pose(heading), goal.level.unwrap_or(any));
+            return (goal.pose(0.0), goal.level.unwrap_or(any));
         }
         let ([x, y], reach) = (ground.centre(), ground.reach());
         let at = [x, y].map(|middle| draws.between(middle - reach, middle + reach));
@@ -127,7 +128,9 @@ impl RandomTree<'_> {
         let far = apart([first.x, first.y], [pose.x, pose.y]);
         let share = if exactly { 1.0 } else { (effort.reach / far).min(1.0) };
         let mix = |a: f64, b: f64| a + share * (b - a);
-        let pose = Pose { x: mix(first.x, pose.x), y: mix(first.y, pose.y), heading: pose.heading };
+        let line = math::atan2(pose.y - first.y, pose.x - first.x);
+        let heading = if exactly { pose.heading } else { line + pose.heading };
+        let pose = Pose { x: mix(first.x, pose.x), y: mix(first.y, pose.y), heading };
         let edges = near.iter().filter_map(|parent| self.edge(*parent, pose, level));
         let edges: Vec<_> = edges.collect();
         let mut best: Option<TreeNode> = None;

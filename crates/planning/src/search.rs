@@ -66,6 +66,8 @@ struct SearchNode {
     /// Where its convoy's memory begins, once its step has been swept.
     memory: u32,
     curvature: u16,
+    /// Curvature with which the step to it began.
+    begins: u16,
     level: u16,
     backwards: bool,
 }
@@ -73,6 +75,8 @@ struct SearchNode {
 const NOBODY: u32 = u32::MAX;
 /// Nodes at most: they are numbered by 32 bits, and take memory.
 const NODES_MOST: usize = 8_000_000;
+/// Estimates are compared in so many parts of a metre: what differs by rounding only is equal, wherever the map lies.
+const GRAINS: f64 = 1_048_576.0;
 /// Shots are tried from every one of so many nodes, and from all that are this near, in steps.
 const SHOT_EVERY: usize = 6;
 const SHOT_NEAR: f64 = 4.0;
@@ -208,7 +212,7 @@ impl<'a> Lattice<'a> {
         self.plant(weight);
         let mut after = 0;
         while let Some(Reverse([estimate, last])) = self.open.pop() {
-            if outcome.way.as_ref().is_some_and(|way| f64::from_bits(estimate) >= way.cost) {
+            if outcome.way.as_ref().is_some_and(|way| estimate as f64 >= way.cost * GRAINS) {
                 return Ended::Found;
             }
             let index = (u64::from(NOBODY) - last) as usize;
@@ -219,7 +223,7 @@ impl<'a> Lattice<'a> {
             if self.is_spent(outcome, after) {
                 return Ended::OutOfEffort;
             }
-            if outcome.expansions % ASKS_EVERY == 0 && stop(outcome.expansions) {
+            if outcome.expansions.is_multiple_of(ASKS_EVERY) && stop(outcome.expansions) {
                 return Ended::Stopped;
             }
             outcome.expansions += 1;
@@ -265,6 +269,7 @@ impl<'a> Lattice<'a> {
             parent: NOBODY,
             memory: NOBODY,
             curvature: self.primitives.number(start.curvature) as u16,
+            begins: self.primitives.number(start.curvature) as u16,
             level: start.level as u16,
             backwards: false,
         };
@@ -278,7 +283,7 @@ impl<'a> Lattice<'a> {
             let estimate = node.cost + weight * left;
             self.nodes.push(node);
             // Of equal estimates the youngest comes first.
-            self.open.push(Reverse([estimate.to_bits(), u64::from(NOBODY) - index]));
+            self.open.push(Reverse([(estimate * GRAINS).round() as u64, u64::from(NOBODY) - index]));
         }
     }
 
@@ -286,7 +291,7 @@ impl<'a> Lattice<'a> {
     fn key(&self, index: usize) -> u64 {
         let node = &self.nodes[index];
         let effort = self.request.effort;
-        let cell = self.frame.from_world([node.pose.x, node.pose.y]).map(|x| (x / effort.cell).floor());
+        let cell = self.frame.inside([node.pose.x, node.pose.y]).map(|x| (x / effort.cell + 0.5).floor());
         let turn = self.frame.turn(node.pose.heading).rem_euclid(TAU) / TAU;
         let heading = ((turn * effort.headings as f64 + 0.5) as u64) % effort.headings as u64;
         let place = (cell[1] + 0.5 * self.columns) * self.columns + cell[0] + 0.5 * self.columns;
@@ -313,7 +318,7 @@ impl<'a> Lattice<'a> {
             let parent = self.nodes[node.parent as usize];
             self.recall(&parent);
             let levels = [parent.level, node.level].map(f64::from);
-            let steps = self.primitives.from(usize::from(parent.curvature), node.backwards);
+            let steps = self.primitives.from(usize::from(node.begins), node.backwards);
             let Some(step) = steps.iter().find(|step| step.to == usize::from(node.curvature)) else {
                 return false;
             };
@@ -339,48 +344,69 @@ impl<'a> Lattice<'a> {
     /// All steps from a node.
     fn expand(&mut self, index: usize, weight: f64, bound: f64) {
         let node = self.nodes[index];
-        let PlanRequest { model, limits, costs, map, .. } = *self.request;
-        let levels = model.levels();
-        let need = model.body(0).core() + map.clearance();
-        let of_level = level_cost(levels, &costs);
-        let directions: &[bool] = if limits.reverses { &[false, true] } else { &[false] };
-        let from = self.primitives.curvatures[usize::from(node.curvature)];
+        let levels = self.request.model.levels();
+        let directions: &[bool] = if self.request.limits.reverses { &[false, true] } else { &[false] };
         let near = [Some(node.level), node.level.checked_sub(1), Some(node.level + 1)];
         for level in near.into_iter().flatten().filter(|level| usize::from(*level) < levels) {
-            let largest = [node.level, level].map(|level| self.primitives.largest[usize::from(level)]);
-            let most = largest[0].min(largest[1]) * (1.0 + 1e-9);
             for &backwards in directions {
-                for k in 0..self.primitives.from(usize::from(node.curvature), backwards).len() {
-                    let step = &self.primitives.from(usize::from(node.curvature), backwards)[k];
-                    let to = self.primitives.curvatures[step.to].abs();
-                    let is_held = from.abs() <= most && to <= most || to < from.abs();
-                    let pose = step.end(node.pose);
-                    if !is_held || map.distance([pose.x, pose.y]) < need {
-                        continue;
-                    }
-                    let turned = node.parent != NOBODY && node.backwards != backwards;
-                    let per_metre = 1.0 + if backwards { costs.backwards } else { 0.0 };
-                    let mean = 0.5 * f64::from(node.level + level);
-                    let cost = node.cost
-                        + self.primitives.step * (per_metre + of_level * mean)
-                        + costs.turning * step.change
-                        + costs.change * f64::from(level.abs_diff(node.level))
-                        + if turned { costs.cusp } else { 0.0 };
-                    if cost >= bound {
-                        continue;
-                    }
-                    let curvature = step.to as u16;
+                let turns_about = node.parent != NOBODY && node.backwards != backwards;
+                for begins in self.steered(&node, turns_about) {
                     let next = SearchNode {
-                        pose,
-                        cost,
                         parent: index as u32,
                         memory: NOBODY,
-                        curvature,
+                        begins,
                         level,
                         backwards,
+                        cost: node.cost + self.cost_of_turning_about(&node, begins, turns_about),
+                        ..node
                     };
-                    self.push(next, weight);
+                    self.push_steps(&node, &next, weight, bound);
                 }
+            }
+        }
+    }
+
+    /// Numbers of curvatures with which a step may begin: that of the node, and where the robot stands to turn about any of a few.
+    fn steered(&self, node: &SearchNode, turns_about: bool) -> Vec<u16> {
+        let mut begins = vec![node.curvature];
+        if turns_about {
+            let most = self.primitives.largest[usize::from(node.level)];
+            let more = [-most, 0.0, most].map(|curvature| self.primitives.number(curvature) as u16);
+            begins.extend(more.into_iter().filter(|number| *number != node.curvature));
+        }
+        begins
+    }
+
+    fn cost_of_turning_about(&self, node: &SearchNode, begins: u16, turns_about: bool) -> f64 {
+        let [from, to] =
+            [node.curvature, begins].map(|number| self.primitives.curvatures[usize::from(number)]);
+        let costs = &self.request.costs;
+        if turns_about { costs.cusp + costs.turning * (to - from).abs() } else { 0.0 }
+    }
+
+    /// Adds the steps from a node that begin as `next` does.
+    fn push_steps(&mut self, node: &SearchNode, next: &SearchNode, weight: f64, bound: f64) {
+        let PlanRequest { model, costs, map, .. } = *self.request;
+        let need = model.body(0).core() + map.clearance();
+        let levels = [node.level, next.level];
+        let largest = levels.map(|level| self.primitives.largest[usize::from(level)]);
+        let most = largest[0].min(largest[1]) * (1.0 + 1e-9);
+        let from = self.primitives.curvatures[usize::from(next.begins)].abs();
+        let per_metre = 1.0
+            + if next.backwards { costs.backwards } else { 0.0 }
+            + level_cost(model.levels(), &costs) * 0.5 * f64::from(levels[0] + levels[1]);
+        let cost = next.cost
+            + self.primitives.step * per_metre
+            + costs.change * f64::from(levels[0].abs_diff(levels[1]));
+        for k in 0..self.primitives.from(usize::from(next.begins), next.backwards).len() {
+            let step = &self.primitives.from(usize::from(next.begins), next.backwards)[k];
+            let to = self.primitives.curvatures[step.to].abs();
+            // A start may be on a sharper curve than its level holds, and leaves it.
+            let is_held = from <= most && to <= most || to < from;
+            let (pose, cost) = (step.end(node.pose), cost + costs.turning * step.change);
+            if is_held && cost < bound && map.distance([pose.x, pose.y]) >= need {
+                let curvature = step.to as u16;
+                self.push(SearchNode { pose, cost, curvature, ..*next }, weight);
             }
         }
     }
@@ -481,7 +507,8 @@ impl<'a> Lattice<'a> {
         let mut legs: Vec<Leg> = vec![];
         for pair in chain.windows(2) {
             let [from, to] = [pair[0], pair[1]];
-            let [begins, ends] = [from, to].map(|node| self.knot(&node));
+            let begins = self.knot(to.begins, from.level);
+            let ends = self.knot(to.curvature, to.level);
             let goes_on = legs.last().is_some_and(|leg| leg.backwards == to.backwards);
             if !goes_on {
                 legs.push(Leg { start: from.pose, backwards: to.backwards, knots: vec![begins] });
@@ -495,14 +522,18 @@ impl<'a> Lattice<'a> {
             join(&mut legs, leg);
         }
         if legs.is_empty() {
-            legs.push(Leg { start: chain[0].pose, backwards: false, knots: vec![self.knot(&chain[0])] });
+            legs.push(Leg {
+                start: chain[0].pose,
+                backwards: false,
+                knots: vec![self.knot(chain[0].curvature, chain[0].level)],
+            });
         }
         legs
     }
 
-    fn knot(&self, node: &SearchNode) -> CurvatureKnot {
-        let curvature = self.primitives.curvatures[usize::from(node.curvature)];
-        CurvatureKnot { way: 0.0, curvature, level: f64::from(node.level) }
+    fn knot(&self, curvature: u16, level: u16) -> CurvatureKnot {
+        let curvature = self.primitives.curvatures[usize::from(curvature)];
+        CurvatureKnot { way: 0.0, curvature, level: f64::from(level) }
     }
 }
 

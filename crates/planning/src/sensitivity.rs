@@ -166,8 +166,8 @@ impl<'a> Sensitivity<'a> {
                     None if robot == 0 => [self.heading[k]; 2],
                     None => [1.5 * turned - 0.5 * memory, turned],
                 };
-                for i in 0..2 {
-                    self.held[frame][i][k] = next[i];
+                for (row, value) in self.held[frame].iter_mut().zip(next) {
+                    row[k] = value;
                 }
             }
         }

@@ -37,13 +37,15 @@ pub(crate) struct Turning {
     pub sharpness: f64,
 }
 
+/// Turns by less than this, rad, are none.
+const NO_TURN: f64 = 1e-9;
 /// Pieces in which a clothoid is integrated turn by this much at most, rad.
 const PIECE: f64 = 0.25;
 
 impl BlendedTurn {
     pub(crate) fn new(deflection: f64, turning: Turning) -> Self {
         let Turning { curvature, sharpness } = turning;
-        let size = deflection.abs();
+        let size = if deflection.abs() < NO_TURN { 0.0 } else { deflection.abs() };
         let ramps = curvature * curvature / sharpness;
         let (peak, hold) = if size <= ramps {
             ((size * sharpness).sqrt(), 0.0)

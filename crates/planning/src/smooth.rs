@@ -47,6 +47,8 @@ const EASES: f64 = 0.25;
 const STIFFENS: f64 = 10.0;
 /// The end is held to this, m and rad.
 const HELD: f64 = 1e-8;
+/// Steps after which the end is farther off, m, are not mended.
+const FARTHEST_OFF: f64 = 5.0;
 /// Limits are held to this share.
 const ROUNDING: f64 = 1e-9;
 
@@ -282,7 +284,7 @@ impl<'a, 'b> Smoother<'a, 'b> {
             if size < HELD {
                 return Some(leg);
             }
-            if !(size < 5.0) {
+            if size.is_nan() || size > FARTHEST_OFF {
                 return None;
             }
             let multipliers = model.inverse.map(|row| dot(&row, &off));

@@ -162,8 +162,8 @@ impl Trailing {
             axes: vec![[0.0, 1.0]; self.frames.len()],
             moved: vec![0.0; n],
         };
-        let mut own = vec![curvature; n];
         for robot in 0..n {
+            let mut own = curvature;
             if robot > 0 {
                 let [leader, frame] = self.follows[robot];
                 convoy.positions[robot] = convoy.place(leader, frame, self.place(robot, level));
@@ -172,7 +172,7 @@ impl Trailing {
                 let [x, y] = [cos * dx + sin * dy, cos * dy - sin * dx];
                 let velocity = [1.0 - curvature * y, curvature * x];
                 let ratio = math::hypot(velocity[0], velocity[1]);
-                own[robot] = if ratio > 0.0 { curvature / ratio } else { 0.0 };
+                own = if ratio > 0.0 { curvature / ratio } else { 0.0 };
                 convoy.courses[robot] = lead.heading + math::atan2(velocity[1], velocity[0]);
             }
             let [from, to] = self.of_robot[robot];
@@ -180,7 +180,7 @@ impl Trailing {
                 convoy.held[frame] = match self.frames[frame].filter {
                     Some(HeadingLag { length, lag }) => {
                         let left = 1.0 - lag / length;
-                        [convoy.courses[robot] - lag * own[robot], left * left * own[robot]]
+                        [convoy.courses[robot] - lag * own, left * left * own]
                     }
                     None => [convoy.courses[robot]; 2],
                 };

@@ -14,7 +14,8 @@ fn vee_plan(map: &Map) -> Result<MotionPlan, PlanError> {
 fn no_way(found: Result<MotionPlan, PlanError>) -> planning::NoWay {
     match found {
         Err(PlanError::NoWay(no_way)) => *no_way,
-        other => panic!("{other:?}"),
+        Err(error) => panic!("{error}"),
+        Ok(plan) => panic!("a plan of {} m", plan.length()),
     }
 }
 
@@ -90,8 +91,8 @@ impl Walk {
                 self.place(model, level, (b.level - a.level) / span);
                 for follower in 0..self.held.len() {
                     let rate = self.held_rate(model, follower);
-                    for i in 0..2 {
-                        self.held[follower][i] += step * rate[i];
+                    for (value, rate) in self.held[follower].iter_mut().zip(rate) {
+                        *value += step * rate;
                     }
                 }
                 visit(self, step);
@@ -399,14 +400,16 @@ fn a_tour_stops_at_each_of_its_goals() {
 /// A lane that ends: a robot alone drives in and parks by reversing; what only drives forwards cannot turn there.
 #[test]
 fn a_lone_car_reverses_where_it_may() {
-    let map = with(&empty(20.0), vec![block([0.0, 20.0], [0.0, 9.0]), block([0.0, 20.0], [11.6, 20.0])]);
+    let map = with(&empty(20.0), vec![block([0.0, 20.0], [0.0, 9.0]), block([0.0, 20.0], [11.8, 20.0])]);
     let car = BodyShape::Rectangle { front: 0.5, back: 0.1, half_width: 0.15 };
     let model = FormationModel::alone(car).expect("a car");
-    let limits = TravelLimits { curvature: 1.0, sharpness: 1.0, outer: 0.8, ..TravelLimits::default() };
-    let start = PlanStart::at(Pose::new(10.0, 10.3, 0.0));
-    let goal = PlanGoal::at(Pose::new(5.0, 10.3, PI));
+    let limits = TravelLimits { curvature: 0.8, sharpness: 1.0, outer: 0.8, ..TravelLimits::default() };
+    let start = PlanStart::at(Pose::new(10.0, 10.4, 0.0));
+    let goal = PlanGoal::at(Pose::new(15.0, 10.4, PI));
     let ask = |limits: TravelLimits| {
-        plan(&PlanRequest::new(&map, &model, limits, Mission { start, goal }), &mut |_| false)
+        let mut request = PlanRequest::new(&map, &model, limits, Mission { start, goal });
+        (request.effort.step, request.effort.cell) = (0.5, 0.25);
+        plan(&request, &mut |_| false)
     };
     let found = ask(TravelLimits { reverses: true, ..limits }).expect("a plan");
     assert!(found.legs.len() >= 2 && found.legs.iter().any(|leg| leg.backwards));
