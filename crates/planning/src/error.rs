@@ -75,6 +75,14 @@ pub enum InputError {
         /// How many there are.
         robots: usize,
     },
+    /// Not one held heading for every follower.
+    #[error("there are held headings for {found} followers, but {expected} follow: give one for each")]
+    WrongCount {
+        /// Given.
+        found: usize,
+        /// Wanted.
+        expected: usize,
+    },
     /// A tour without goals.
     #[error("a tour needs at least one goal")]
     NoGoals,

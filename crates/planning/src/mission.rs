@@ -75,6 +75,8 @@ pub struct SearchEffort {
     pub headings: usize,
     /// Whether the way is smoothed.
     pub smooths: bool,
+    /// Whether it is recorded where steps ended that were swept.
+    pub records: bool,
 }
 
 /// Everything that a plan is asked of.
@@ -92,13 +94,30 @@ pub struct PlanRequest<'a> {
     pub costs: CostWeights,
     /// With how much effort.
     pub effort: SearchEffort,
+    /// θ̄ in rad and κ̄ in 1/m of the headings that followers are held against at the start, for a formation that is on its
+    /// way. Without them followers are taken to have driven the start's curvature for long.
+    pub held: Option<&'a [[f64; 2]]>,
 }
 
 impl<'a> PlanRequest<'a> {
     /// With the usual costs and effort.
     pub fn new(map: &'a Map, model: &'a FormationModel, limits: TravelLimits, mission: Mission) -> Self {
         let (costs, effort) = (CostWeights::default(), SearchEffort::default());
-        Self { map, model, limits, mission, costs, effort }
+        Self { map, model, limits, mission, costs, effort, held: None }
+    }
+
+    /// Holds the headings of followers against their number.
+    pub(crate) fn check_held(&self) -> Result<(), InputError> {
+        let expected = self.model.followers().len();
+        match self.held {
+            Some(held) if held.len() != expected => {
+                Err(InputError::WrongCount { found: held.len(), expected })
+            }
+            Some(held) if held.iter().flatten().any(|value| !value.is_finite()) => {
+                Err(InputError::NotFinite { what: "a held heading".into() })
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -148,6 +167,7 @@ impl Default for SearchEffort {
             cell: 0.6,
             headings: 60,
             smooths: true,
+            records: false,
         }
     }
 }

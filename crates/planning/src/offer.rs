@@ -189,7 +189,7 @@ fn offer(request: &PlanRequest<'_>, found: &mut NoWay, stop: &mut dyn FnMut(usiz
             },
             ..mission
         };
-        let request = PlanRequest { model, mission, effort: less(&request.effort), ..*request };
+        let request = PlanRequest { model, mission, effort: less(&request.effort), held: None, ..*request };
         let trailing = Trailing::new(model, &request.limits);
         let outcome = search(&request, &trailing, stop);
         found.expansions += outcome.expansions;
@@ -216,8 +216,7 @@ fn blocking_gap(request: &PlanRequest<'_>, offer: &Offer) -> Option<Gap> {
     let mut sweep = Sweep::new(request.map, &trailing, &request.limits);
     let levels = [model.levels() - 1, request.mission.start.level];
     levels.iter().find_map(|level| {
-        let start = request.mission.start;
-        let mut convoy = trailing.steady(start.pose, start.curvature, *level as f64);
+        let mut convoy = trailing.begin(request, *level as f64);
         sweep.resume();
         for leg in &offer.legs {
             for mut piece in leg.pieces(STEP) {

@@ -45,7 +45,11 @@ pub struct MotionPlan {
     pub smoothed: bool,
     /// How much way ahead levels are handed out, m: as far as all robots stay clear that are narrower so early.
     pub ahead: f64,
-    /// Where steps of the search ended that were swept, m.
+    /// Whether the speed at the start can be held: not where something bounds it that is too near to brake.
+    pub brakes_in_time: bool,
+    /// θ̄ in rad and κ̄ in 1/m of the headings that followers are held against at the end, for [`PlanRequest::held`].
+    pub held: Vec<[f64; 2]>,
+    /// Where steps of the search ended that were swept, m, if the effort asks for it.
     pub tried: Vec<[f64; 2]>,
 }
 
@@ -120,7 +124,7 @@ impl MotionPlan {
     pub(crate) fn along(request: &PlanRequest<'_>, trailing: &Trailing, legs: Vec<Leg>) -> Self {
         let mut points = vec![];
         let start = request.mission.start;
-        let mut convoy = trailing.steady(start.pose, start.curvature, start.level as f64);
+        let mut convoy = trailing.begin(request, start.level as f64);
         let mut speed = start.speed;
         for leg in &legs {
             let mut course = Course::new(trailing, leg, &mut convoy);
@@ -137,6 +141,8 @@ impl MotionPlan {
             }));
             speed = 0.0;
         }
+        let first = points.first().map_or(0.0, |point: &PlanPoint| point.speed.abs());
+        let brakes_in_time = first >= start.speed - 1e-9;
         let cost = cost_of(&legs, request.model.levels(), &request.costs);
         let mut plan = Self {
             points,
@@ -146,6 +152,8 @@ impl MotionPlan {
             expansions: 0,
             smoothed: false,
             ahead: 0.0,
+            brakes_in_time,
+            held: trailing.held_of_followers(&convoy),
             tried: vec![],
         };
         plan.hand_out_early(request, trailing);
@@ -177,10 +185,9 @@ impl MotionPlan {
     }
 
     fn is_clear_at(&self, request: &PlanRequest<'_>, trailing: &Trailing, levels: &[f64]) -> bool {
-        let start = request.mission.start;
         let Some(first) = levels.first() else { return true };
         let mut sweep = Sweep::new(request.map, trailing, &request.limits);
-        let mut convoy = trailing.steady(start.pose, start.curvature, *first);
+        let mut convoy = trailing.begin(request, *first);
         let mut number = 0;
         sweep.begin(&convoy).is_ok()
             && self.legs.iter().all(|leg| {

@@ -29,6 +29,7 @@ pub enum PlanError {
 pub fn plan(request: &PlanRequest<'_>, stop: &mut dyn FnMut(usize) -> bool) -> Result<MotionPlan, PlanError> {
     request.mission.check(request.model, &request.limits)?;
     request.effort.check()?;
+    request.check_held()?;
     let no_way = |no_way: NoWay| PlanError::NoWay(Box::new(no_way));
     let trailing = Trailing::new(request.model, &request.limits);
     if let Some(reason) = at_the_ends(request, &trailing) {
@@ -51,8 +52,7 @@ pub fn plan(request: &PlanRequest<'_>, stop: &mut dyn FnMut(usize) -> bool) -> R
     Ok(plan)
 }
 
-/// Plans a way over several goals, at each of which the formation stops; a plan for each. Followers are taken to hold their
-/// places behind a straight way where one begins.
+/// Plans a way over several goals, at each of which the formation stops; a plan for each, which begins as the one before ends.
 ///
 /// # Errors
 /// There are no goals, or one has no way: with its number.
@@ -65,12 +65,14 @@ pub fn plan_tour(
         return Err(TourError { goal: 0, error: InputError::NoGoals.into() });
     }
     let mut start = request.mission.start;
-    let mut plans = vec![];
+    let mut plans: Vec<MotionPlan> = vec![];
     for (goal, to) in goals.iter().enumerate() {
-        let request = PlanRequest { mission: Mission { start, goal: *to }, ..*request };
+        let held = plans.last().map_or(request.held, |before| Some(&before.held));
+        let request = PlanRequest { mission: Mission { start, goal: *to }, held, ..*request };
         let found = plan(&request, stop).map_err(|error| TourError { goal, error })?;
         if let Some(end) = found.points.last() {
-            start = PlanStart { level: end.level.round() as usize, ..PlanStart::at(end.pose) };
+            let level = end.level.round() as usize;
+            start = PlanStart { level, curvature: end.curvature, ..PlanStart::at(end.pose) };
         }
         plans.push(found);
     }
@@ -98,7 +100,7 @@ fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayRe
         return Some(NoWayReason::GoalOutside);
     }
     let mut sweep = Sweep::new(map, trailing, limits);
-    let convoy = trailing.steady(start.pose, start.curvature, start.level as f64);
+    let convoy = trailing.begin(request, start.level as f64);
     if let Err(Blocked::Touches { robot, .. }) = sweep.begin(&convoy) {
         let (_, by) = map.nearest(convoy.positions[robot]);
         return Some(NoWayReason::StartBlocked { robot, by });
@@ -110,8 +112,7 @@ fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayRe
 /// Smooths leg by leg: each ends where it ended, so that the next one stays as it is.
 fn smooth(request: &PlanRequest<'_>, trailing: &Trailing, legs: &[Leg]) -> (Vec<Leg>, bool) {
     let mut sweep = Sweep::new(request.map, trailing, &request.limits);
-    let start = request.mission.start;
-    let mut convoy = trailing.steady(start.pose, start.curvature, start.level as f64);
+    let mut convoy = trailing.begin(request, request.mission.start.level as f64);
     let mut changed = false;
     let smooth = legs.iter().map(|leg| {
         let found = smoothed(request, &mut sweep, &convoy, leg);

@@ -196,7 +196,7 @@ impl<'a> Lattice<'a> {
             memory: vec![],
             open: BinaryHeap::new(),
             closed: Cells::default(),
-            convoy: trailing.steady(start.pose, start.curvature, start.level as f64),
+            convoy: trailing.begin(request, start.level as f64),
             columns: (2.0 * extent / effort.cell).ceil() + 2.0,
         }
     }
@@ -228,6 +228,10 @@ impl<'a> Lattice<'a> {
             }
             outcome.expansions += 1;
             after += usize::from(outcome.way.is_some());
+            if self.request.effort.records {
+                let pose = self.nodes[index].pose;
+                outcome.tried.push([pose.x, pose.y]);
+            }
             if !self.arrives(index) {
                 continue;
             }
@@ -309,8 +313,7 @@ impl<'a> Lattice<'a> {
         let node = self.nodes[index];
         let trailing = self.sweep.trailing();
         if node.parent == NOBODY {
-            let start = self.request.mission.start;
-            self.convoy = trailing.steady(start.pose, start.curvature, start.level as f64);
+            self.convoy = trailing.begin(self.request, f64::from(node.level));
             if self.sweep.begin(&self.convoy).is_err() {
                 return false;
             }

@@ -40,7 +40,7 @@ const PIECES: f64 = 0.25;
 const STEPS: usize = 8;
 const TRIES: usize = 4;
 /// A step that lowers J by less than this share is the last.
-const ENOUGH: f64 = 2e-3;
+const ENOUGH: f64 = 5e-3;
 /// Damping: at first, after success, after a try without.
 const DAMPING: f64 = 0.5;
 const EASES: f64 = 0.25;

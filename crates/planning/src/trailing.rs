@@ -15,6 +15,7 @@ use crate::formation_model::{BodyShape, FormationModel, HeadingLag, SLOWEST_SHAR
 use crate::leg::{Leg, Piece};
 use crate::limits::TravelLimits;
 use crate::map::Map;
+use crate::mission::PlanRequest;
 use vocabulary::{Pose, math, wrap};
 
 /// A formation made ready: who is held against which heading.
@@ -130,6 +131,12 @@ impl Trailing {
         self.of_robot[robot][0]..self.of_robot[robot][1]
     }
 
+    /// [θ̄, κ̄] of every follower.
+    pub(crate) fn held_of_followers(&self, convoy: &Convoy) -> Vec<[f64; 2]> {
+        let of = |[_, frame]: &[usize; 2]| [wrap(convoy.held[*frame][0]), convoy.held[*frame][1]];
+        self.follows.iter().skip(1).map(of).collect()
+    }
+
     /// Those headings with their memories.
     pub(crate) fn held_of(&self, convoy: &Convoy, robot: usize) -> Vec<[f64; 2]> {
         convoy.held[self.frames_of(robot)].to_vec()
@@ -153,6 +160,17 @@ impl Trailing {
 
     /// The formation behind a lead that has driven a curve of `curvature` 1/m for long, at a level.
     pub(crate) fn steady(&self, lead: Pose, curvature: f64, level: f64) -> Convoy {
+        self.held_at(lead, curvature, level, None)
+    }
+
+    /// The formation at a request's start, but for its level.
+    pub(crate) fn begin(&self, request: &PlanRequest<'_>, level: f64) -> Convoy {
+        let start = request.mission.start;
+        self.held_at(start.pose, start.curvature, level, request.held)
+    }
+
+    /// As [`Trailing::steady`], with [θ̄, κ̄] of every follower where they are known.
+    fn held_at(&self, lead: Pose, curvature: f64, level: f64, held: Option<&[[f64; 2]]>) -> Convoy {
         let n = self.robots();
         let mut convoy = Convoy {
             positions: vec![[lead.x, lead.y]; n],
@@ -184,6 +202,11 @@ impl Trailing {
                     }
                     None => [convoy.courses[robot]; 2],
                 };
+                let of_follower = self.follows.iter().skip(1).position(|[_, own]| *own == frame);
+                if let (Some(held), Some(follower), Some(_)) = (held, of_follower, self.frames[frame].filter)
+                {
+                    convoy.held[frame] = held[follower];
+                }
                 convoy.turn_axis(frame);
             }
         }
@@ -341,7 +364,7 @@ pub(crate) enum Blocked {
 }
 
 /// Pieces in which ways are swept, m.
-pub(crate) const STEP: f64 = 0.125;
+pub(crate) const STEP: f64 = 0.16;
 /// Chords shorter than this, m, are not halved any more.
 const SHORTEST: f64 = 1e-3;
 /// Curvatures of followers in transitions may be this much above those on circles.
