@@ -1,5 +1,6 @@
 //! Why there is no way, and what there is a way for: a smaller formation, or a column, and the gap that holds up the rest.
 
+use crate::convex::apart;
 use crate::formation_model::FormationModel;
 use crate::gap::Gap;
 use crate::leg::Leg;
@@ -222,12 +223,18 @@ fn blocking_gap(request: &PlanRequest<'_>, offer: &Offer) -> Option<Gap> {
             for mut piece in leg.pieces(STEP) {
                 piece.level = *level as f64;
                 if let Err(Blocked::Touches { robot, .. }) = sweep.piece(&mut convoy, &piece) {
-                    return Gap::at(request.map, convoy.positions[robot]);
+                    return Gap::at(request.map, beside(&offer.legs, convoy.positions[robot]));
                 }
             }
         }
         None
     })
+}
+
+/// The point of a way that is nearest to another.
+fn beside(legs: &[Leg], point: [f64; 2]) -> [f64; 2] {
+    let ends = legs.iter().flat_map(|leg| leg.pieces(STEP)).map(|piece| [piece.end.x, piece.end.y]);
+    ends.min_by(|a, b| apart(*a, point).total_cmp(&apart(*b, point))).unwrap_or(point)
 }
 
 /// What a point is too near to, if it needs this much room, m.

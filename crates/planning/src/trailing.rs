@@ -344,6 +344,9 @@ pub(crate) struct Sweep<'a> {
     limits: TravelLimits,
     /// How far each robot can go on for sure, m.
     slack: Vec<f64>,
+    /// The level at the end of the last piece, and whether it changed over the last piece and the one before.
+    level: f64,
+    shifting: [bool; 2],
 }
 
 /// Why a sweep ends.
@@ -373,7 +376,7 @@ const TRANSITIONS: f64 = 2.0;
 impl<'a> Sweep<'a> {
     pub(crate) fn new(map: &'a Map, trailing: &'a Trailing, limits: &TravelLimits) -> Self {
         let slack = vec![0.0; trailing.robots()];
-        Self { map, trailing, limits: *limits, slack }
+        Self { map, trailing, limits: *limits, slack, level: 0.0, shifting: [true; 2] }
     }
 
     pub(crate) fn trailing(&self) -> &'a Trailing {
@@ -423,10 +426,13 @@ impl<'a> Sweep<'a> {
     /// Begins anew with a convoy that has been found clear.
     pub(crate) fn resume(&mut self) {
         self.slack.fill(0.0);
+        self.shifting = [true; 2];
     }
 
     /// Moves all robots over a piece of the lead's way.
     pub(crate) fn piece(&mut self, convoy: &mut Convoy, piece: &Piece) -> Result<(), Blocked> {
+        self.shifting = [piece.level != self.level, self.shifting[0]];
+        self.level = piece.level;
         for robot in 0..self.trailing.robots() {
             let before = convoy.pose(robot);
             let course = convoy.courses[robot];
@@ -457,11 +463,10 @@ impl<'a> Sweep<'a> {
         let ([sin, cos], to, moved) = (convoy.axes[frame], convoy.positions[robot], convoy.moved[robot]);
         let forward = cos * (to[0] - before[0]) + sin * (to[1] - before[1]);
         let turns = wrap(convoy.courses[robot] - course).abs();
-        // Tiny pieces at knots say nothing of a turn.
-        let sharp = self
-            .limits
-            .follower_curvature
-            .is_some_and(|own| moved > 0.5 * STEP && turns > own * moved * FOLLOWS_LOOSELY);
+        // Tiny pieces at knots say nothing of a turn, nor do those at which places begin or end to move.
+        let tells = moved > 0.5 * STEP && self.shifting == [false; 2];
+        let sharp =
+            self.limits.follower_curvature.is_some_and(|own| tells && turns > own * moved * FOLLOWS_LOOSELY);
         if moved > self.limits.fastest_share() * length * (1.0 + 1e-9) + 1e-12
             || forward < SLOWEST_SHARE * length - 1e-12
             || sharp

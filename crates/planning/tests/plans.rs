@@ -1,8 +1,8 @@
 //! Plans for formations over random maps, held against an independent simulation and against the properties that they promise.
 
 use planning::{
-    BodyShape, Boundary, Convex, FormationModel, InputError, Leg, Map, Mission, MotionPlan, NoWayReason,
-    PlanError, PlanGoal, PlanRequest, PlanStart, TravelLimits, plan, plan_tour, trial,
+    BodyShape, Boundary, Convex, FollowerModel, FormationModel, InputError, Leg, Map, Mission, MotionPlan,
+    NoWayReason, PlanError, PlanGoal, PlanRequest, PlanStart, TravelLimits, plan, plan_tour, trial,
 };
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use vocabulary::{Pose, math, wrap};
@@ -131,9 +131,22 @@ fn walked(map: &Map, model: &FormationModel, plan: &MotionPlan) -> [f64; 2] {
 #[test]
 fn nothing_is_touched_and_no_limit_exceeded() {
     let (model, limits) = (trial::vee(), TravelLimits::default());
-    for (seed, count) in [(0, 20), (1, 50), (2, 50), (3, 100), (4, 100), (5, 100)] {
+    for (seed, count, smooths) in [
+        (0, 20, true),
+        (1, 50, true),
+        (2, 50, false),
+        (3, 100, true),
+        (4, 100, true),
+        (5, 100, false),
+        (6, 100, false),
+        (7, 100, false),
+        (8, 100, true),
+    ] {
         let map = trial::map(seed, count);
-        let plan = vee_plan(&map).unwrap_or_else(|error| panic!("{seed} {count}: {error}"));
+        let mut request = PlanRequest::new(&map, &model, limits, trial::mission());
+        request.effort.smooths = smooths;
+        let plan = plan(&request, &mut |_| false).unwrap_or_else(|error| panic!("{seed} {count}: {error}"));
+        assert!(plan.smoothed == smooths, "{seed} {count}");
         let [least, fastest] = walked(&map, &model, &plan);
         println!("{seed} {count}: clearance {least:.4} m, fastest {fastest:.3}");
         assert!(least >= trial::CLEARANCE, "{seed} {count}: {least}");
@@ -437,7 +450,129 @@ fn a_lone_car_reverses_where_it_may() {
     assert!(matches!(refused.reason, NoWayReason::HeadingUnreachable), "{refused}");
 }
 
-/// A pocket that is as long as a short column: the wings have no room, and the tail of seven would stick out into a block.
+/// A lane with a wall behind the start: a column of five fits in, one of seven does not.
+#[test]
+fn in_a_dead_end_a_smaller_formation_is_offered() {
+    let lane = vec![block([0.0, 20.0], [0.0, 18.6]), block([0.0, 20.0], [21.4, 40.0])];
+    let map = with(&empty(40.0), lane);
+    let mission = Mission {
+        start: PlanStart { level: 4, ..PlanStart::at(Pose::new(5.0, 20.0, 0.0)) },
+        goal: PlanGoal::at(Pose::new(32.0, 20.0, 0.0)),
+    };
+    let (model, limits) = (trial::vee(), TravelLimits::default());
+    let found = no_way(plan(&PlanRequest::new(&map, &model, limits, mission), &mut |_| false));
+    assert!(
+        matches!(found.reason, NoWayReason::StartBlocked { robot: 5 | 6, by: Boundary::Ground(_) }),
+        "{found}"
+    );
+    assert!(found.to_string().ends_with("; one for a column of 5"), "{found}");
+    let offer = found.offer.expect("an offer");
+    let request = PlanRequest::new(&map, &offer.model, limits, offer.mission);
+    let taken = plan(&request, &mut |_| false).expect("what is offered is there");
+    let [least, _] = walked(&map, &offer.model, &taken);
+    assert!(least >= 0.25, "{least}");
+}
+
+/// Nobody gets through a gate that is too narrow for the lead, and whoever asks for the shape in a lane is offered the column.
+#[test]
+fn where_the_shape_has_no_room_the_column_is_offered_with_the_gap() {
+    let map = with(&empty(40.0), vec![block([20.0, 40.0], [0.0, 18.6]), block([20.0, 40.0], [21.4, 40.0])]);
+    let mission = Mission {
+        start: PlanStart::at(Pose::new(8.0, 20.0, 0.0)),
+        goal: PlanGoal::at(Pose::new(36.0, 20.0, 0.0)).at_level(0),
+    };
+    let model = trial::vee();
+    let request = PlanRequest::new(&map, &model, TravelLimits::default(), mission);
+    let found = no_way(plan(&request, &mut |_| false));
+    assert!(matches!(found.reason, NoWayReason::TooWide { robots: 7, .. }), "{found}");
+    assert_eq!(found.offer.as_ref().map(|offer| offer.robots), Some(7), "{found}");
+    let gap = found.gap.expect("a gap");
+    assert!((gap.width - 2.8).abs() < 1e-9, "{gap:?}");
+    // A search takes some 5 µs for each step that it sweeps: two seconds are far away.
+    assert!(found.expansions < 150_000, "{}", found.expansions);
+}
+
+/// The lead turns, at speed, and followers hold what they held: the plan goes on from there.
+#[test]
+fn a_plan_begins_in_the_middle_of_another() {
+    let map = trial::map(3, 50);
+    let (model, limits) = (trial::vee(), TravelLimits::default());
+    let first = vee_plan(&map).expect("a plan");
+    let mut walk = Walk::new(&model, first.legs[0].start);
+    let mut gone = 0.0;
+    let mut held = None;
+    walk.leg(&model, &first.legs[0], &mut |walk, step| {
+        gone += step;
+        if gone > 6.3 && held.is_none() {
+            held = Some((walk.held.clone(), walk.positions.clone(), gone));
+        }
+    });
+    let (held, positions, gone) = held.expect("far enough");
+    let here = first.at_way(gone).expect("a point");
+    let level = here.level.round() as usize;
+    let start = PlanStart { pose: here.pose, level, curvature: here.curvature, speed: here.speed };
+    let mission = Mission { start, ..trial::mission() };
+    let request = PlanRequest { held: Some(&held), ..PlanRequest::new(&map, &model, limits, mission) };
+    let second = plan(&request, &mut |_| false).expect("a plan");
+    assert!(second.brakes_in_time && (second.points[0].speed - here.speed).abs() < 1e-9);
+    assert_eq!(second.points[0].curvature, here.curvature);
+    let level_off = (here.level - level as f64).abs();
+    for (robot, position) in second.points[0].robots.iter().zip(&positions) {
+        let off = math::hypot(robot.x - position[0], robot.y - position[1]);
+        assert!(off < 0.02 + 3.0 * level_off, "{off}");
+    }
+    within_limits(&second, &limits);
+    let few = [[0.0; 2]; 2];
+    let request = PlanRequest { held: Some(&few), ..request };
+    let refused = plan(&request, &mut |_| false).expect_err("refused");
+    assert_eq!(refused, PlanError::Input(InputError::WrongCount { found: 2, expected: 6 }));
+}
+
+/// Cars of 0.6 m by 0.3 m: every corner stays clear, and none turns more sharply than its wheels do.
+#[test]
+fn rectangles_are_held_clear_as_they_are() {
+    let body = BodyShape::Rectangle { front: 0.5, back: 0.1, half_width: 0.15 };
+    let followers =
+        trial::vee().followers().iter().map(|follower| FollowerModel { body, ..follower.clone() }).collect();
+    let model = FormationModel::new(body, followers).expect("a formation");
+    let limits = TravelLimits { follower_curvature: Some(0.9), ..TravelLimits::default() };
+    for seed in [1, 2, 3] {
+        let map = trial::map(seed, 60);
+        let found = plan(&PlanRequest::new(&map, &model, limits, trial::mission()), &mut |_| false);
+        let found = found.unwrap_or_else(|error| panic!("{seed}: {error}"));
+        let mut walk = Walk::new(&model, found.legs[0].start);
+        let (mut least, mut count) = (f64::INFINITY, 0);
+        walk.leg(&model, &found.legs[0], &mut |walk, _| {
+            count += 1;
+            if count % 20 > 0 {
+                return;
+            }
+            for ([x, y], [vx, vy]) in walk.positions.iter().zip(&walk.velocities) {
+                let pose = Pose::new(*x, *y, math::atan2(*vy, *vx));
+                let [x, y] = pose.world_from_body(0.2, 0.0);
+                let car = Convex::rectangle(Pose::new(x, y, pose.heading), [0.3, 0.15]).expect("a box");
+                least =
+                    map.obstacles().iter().map(|obstacle| obstacle.distance_to(&car)).fold(least, f64::min);
+            }
+        });
+        println!("{seed}: {least:.4} m");
+        assert!(least >= trial::CLEARANCE, "{seed}: {least}");
+        within_limits(&found, &limits);
+    }
+}
+
+#[test]
+fn steps_of_the_search_are_recorded_if_asked_for() {
+    let (map, model) = (trial::map(2, 50), trial::vee());
+    let mut request = PlanRequest::new(&map, &model, TravelLimits::default(), trial::mission());
+    let without = plan(&request, &mut |_| false).expect("a plan");
+    request.effort.records = true;
+    let with = plan(&request, &mut |_| false).expect("a plan");
+    assert!(without.tried.is_empty());
+    assert_eq!(with.tried.len(), with.expansions);
+    assert_eq!(with.digest(), without.digest());
+}
+
 #[test]
 fn a_stop_from_outside_is_obeyed() {
     let map = trial::map(3, 100);
