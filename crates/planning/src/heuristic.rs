@@ -2,7 +2,8 @@
 //! obstacles.
 //!
 //! The first comes from Dijkstra's algorithm over a grid of squares with eight neighbours. A square is closed only where no
-//! point of it has room for the core of the lead's body, so that what the grid cannot reach nobody reaches. Ways over the grid
+//! point of it has room for the core of the lead's body, so that what the grid cannot reach nobody reaches. Where there is room
+//! for that, but not for the column to both sides of it, a way counts several times: only a bent column gets by there. Ways over the grid
 //! are longer than straight ones by up to 8 %, and the middles of squares are off: the estimate is not a bound to the last
 //! centimetre, and a search by it finds the best way of its lattice up to its weight and that.
 
@@ -39,6 +40,8 @@ pub(crate) struct HeuristicSetup {
     pub with_heading: bool,
     /// Radius that the lead needs clear, m.
     pub need: f64,
+    /// Half the width that the column needs clear, m.
+    pub column: f64,
     /// Smallest radius of its turns, m.
     pub radius: f64,
     pub reverses: bool,
@@ -48,7 +51,9 @@ pub(crate) struct HeuristicSetup {
 const CELL: f64 = 0.25;
 const CELLS_MOST: f64 = 600.0;
 /// Ways are counted in this many parts of a square, so that they are whole numbers.
-const PARTS: f64 = 4096.0;
+const PARTS: f64 = 1024.0;
+/// How many times ways count where the column is too wide.
+const NARROW: u32 = 3;
 /// Farther than this many radii of turns from the goal headings hardly matter.
 const NEAR: f64 = 8.0;
 
@@ -71,17 +76,17 @@ impl Heuristic {
             radius: setup.radius,
             reverses: setup.reverses,
         };
-        heuristic.left = heuristic.dijkstra(map, setup.need);
+        heuristic.left = heuristic.dijkstra(map, [setup.need, setup.column]);
         heuristic
     }
 
     /// Ways left from every square to the goal's.
-    fn dijkstra(&self, map: &Map, need: f64) -> Vec<f64> {
+    fn dijkstra(&self, map: &Map, needs: [f64; 2]) -> Vec<f64> {
         let [columns, rows] = self.size;
         // A square with a point that has room has room in its middle but for half its diagonal.
-        let enough = need - 0.5 * 2.0_f64.sqrt() * self.cell;
+        let enough = needs.map(|need| need - 0.5 * 2.0_f64.sqrt() * self.cell);
         let mut steps = vec![u32::MAX; columns * rows];
-        let mut is_open = vec![None; columns * rows];
+        let mut factors: Vec<Option<u32>> = vec![None; columns * rows];
         let mut heap = BinaryHeap::new();
         if let Some(goal) = self.square([self.goal.x, self.goal.y]) {
             steps[goal] = 0;
@@ -100,12 +105,22 @@ impl Heuristic {
                         continue;
                     }
                     let next = r as usize * columns + c as usize;
-                    let to = way.saturating_add(if right == 0 || up == 0 { straight } else { diagonal });
-                    if to >= steps[next] {
+                    let step = if right == 0 || up == 0 { straight } else { diagonal };
+                    if way.saturating_add(step) >= steps[next] {
                         continue;
                     }
-                    let middle = || map.distance(self.middle(next)) >= enough;
-                    if *is_open[next].get_or_insert_with(middle) {
+                    let factor = *factors[next].get_or_insert_with(|| {
+                        let distance = map.distance(self.middle(next));
+                        if distance >= enough[1] {
+                            1
+                        } else if distance >= enough[0] {
+                            NARROW
+                        } else {
+                            0
+                        }
+                    });
+                    let to = way.saturating_add(factor * step);
+                    if factor > 0 && to < steps[next] {
                         steps[next] = to;
                         heap.push(Reverse([to, next as u32]));
                     }

@@ -73,6 +73,8 @@ struct SearchNode {
 }
 
 const NOBODY: u32 = u32::MAX;
+/// What has no way after half of the effort is searched with a weight larger by this.
+const GREEDY: f64 = 2.5;
 /// Nodes at most: they are numbered by 32 bits, and take memory.
 const NODES_MOST: usize = 8_000_000;
 /// Estimates are compared in so many parts of a metre: what differs by rounding only is equal, wherever the map lies.
@@ -119,13 +121,17 @@ pub(crate) fn search(
     if lattice.heuristic.left(request.mission.start.pose).is_infinite() {
         return outcome;
     }
-    for weight in request.effort.weights {
-        let ended = lattice.run(weight, &mut outcome, stop);
-        outcome.ended = if outcome.way.is_some() { Ended::Found } else { ended };
-        let goes_on = matches!(ended, Ended::Found | Ended::Exhausted) && outcome.way.is_some();
-        if !goes_on {
-            break;
+    let [first, better] = request.effort.weights;
+    let all = request.effort.expansions;
+    outcome.ended = lattice.run(first, all / 2, &mut outcome, stop);
+    if outcome.ended == Ended::OutOfEffort && outcome.way.is_none() {
+        outcome.ended = lattice.run(GREEDY * first, all, &mut outcome, stop);
+    }
+    if outcome.way.is_some() {
+        if outcome.ended != Ended::Stopped {
+            lattice.run(better, all, &mut outcome, stop);
         }
+        outcome.ended = Ended::Found;
     }
     outcome
 }
@@ -182,6 +188,7 @@ impl<'a> Lattice<'a> {
             goal: goal.pose(start.pose.heading),
             with_heading: goal.heading.is_some(),
             need: model.body(0).core() + map.clearance(),
+            column: model.body(0).core() + map.clearance() + trailing.column_half_width(),
             radius: 1.0 / most,
             reverses: limits.reverses,
         };
@@ -201,10 +208,11 @@ impl<'a> Lattice<'a> {
         }
     }
 
-    /// A search with one weight.
+    /// A search with one weight, of so many steps until the first way.
     fn run(
         &mut self,
         weight: f64,
+        limit: usize,
         outcome: &mut SearchOutcome,
         stop: &mut dyn FnMut(usize) -> bool,
     ) -> Ended {
@@ -220,7 +228,7 @@ impl<'a> Lattice<'a> {
             if self.closed.contains(&key) {
                 continue;
             }
-            if self.is_spent(outcome, after) {
+            if self.is_spent(outcome, after, limit) {
                 return Ended::OutOfEffort;
             }
             if outcome.expansions.is_multiple_of(ASKS_EVERY) && stop(outcome.expansions) {
@@ -248,11 +256,11 @@ impl<'a> Lattice<'a> {
         Ended::Exhausted
     }
 
-    fn is_spent(&self, outcome: &SearchOutcome, after: usize) -> bool {
+    fn is_spent(&self, outcome: &SearchOutcome, after: usize, limit: usize) -> bool {
         let effort = &self.request.effort;
         let spent = match outcome.way {
             Some(_) => after >= effort.improvement,
-            None => outcome.expansions >= effort.expansions,
+            None => outcome.expansions >= limit,
         };
         spent || self.nodes.len() >= NODES_MOST
     }

@@ -38,11 +38,11 @@ const KNOTS: f64 = 1.0;
 const PIECES: f64 = 0.25;
 /// Steps that are taken at most, and tries without success.
 const STEPS: usize = 8;
-const TRIES: usize = 4;
+const TRIES: usize = 3;
 /// A step that lowers J by less than this share is the last.
 const ENOUGH: f64 = 5e-3;
 /// Damping: at first, after success, after a try without.
-const DAMPING: f64 = 0.5;
+const DAMPING: f64 = 50.0;
 const EASES: f64 = 0.25;
 const STIFFENS: f64 = 10.0;
 /// The end is held to this, m and rad.

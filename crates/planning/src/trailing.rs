@@ -108,6 +108,16 @@ impl Trailing {
         Self { follows, frames, of_robot, places, bodies, courses, largest, between }
     }
 
+    /// By how much robots of the column keep to either side of the lead's track, on the side on which they do so less, m.
+    pub(crate) fn column_half_width(&self) -> f64 {
+        let straight = self.steady(Pose::default(), 0.0, (self.levels() - 1) as f64);
+        let sides = straight
+            .positions
+            .iter()
+            .fold([0.0_f64; 2], |[right, left], [_, y]| [right.max(-y), left.max(*y)]);
+        sides[0].min(sides[1])
+    }
+
     /// Largest curvature of every level, 1/m.
     pub(crate) fn largest(&self) -> &[f64] {
         &self.largest
