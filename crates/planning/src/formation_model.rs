@@ -66,6 +66,8 @@ pub struct SteadyRobot {
 
 /// Followers go no slower than this share of the lead's speed: where they would nearly stand they would lose their heading.
 pub(crate) const SLOWEST_SHARE: f64 = 0.15;
+/// Levels at most.
+const LEVELS_MOST: usize = 1000;
 /// Curvatures that are tried on the way to the largest.
 const CURVATURES: usize = 96;
 
@@ -132,14 +134,16 @@ impl FormationModel {
     pub fn new(lead: BodyShape, followers: Vec<FollowerModel>) -> Result<Self, InputError> {
         lead.check(&|| "the lead".into())?;
         let levels = followers.first().map_or(1, |follower| follower.places.len());
+        let fits = (1..=LEVELS_MOST).contains(&levels);
+        checked(levels as f64, fits, || "the number of levels".into(), "from 1 to 1000")?;
         for (k, follower) in followers.iter().enumerate() {
             let number = k + 1;
             if follower.leader >= number {
                 return Err(InputError::LeaderAfterFollower { follower: number, leader: follower.leader });
             }
             let found = follower.places.len();
-            if found != levels || found == 0 {
-                return Err(InputError::UnevenLevels { follower: number, found, expected: levels.max(1) });
+            if found != levels {
+                return Err(InputError::UnevenLevels { follower: number, found, expected: levels });
             }
             if follower.places.iter().flatten().any(|value| !value.is_finite()) {
                 return Err(InputError::NotFinite { what: format!("a place of follower {number}") });

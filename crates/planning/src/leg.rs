@@ -15,8 +15,13 @@ pub struct CurvatureKnot {
     pub way: f64,
     /// 1/m, positive to the left.
     pub curvature: f64,
-    /// Level of the formation: between two it moves from one to the other.
+    /// Level of the formation: between two it moves from one to the other, as 3x² − 2x³.
     pub level: f64,
+}
+
+/// The level at a share of the way between two knots: 3x² − 2x³, so that places begin and end to move without a jump.
+pub(crate) fn level_between([from, to]: [f64; 2], share: f64) -> f64 {
+    if share >= 1.0 { to } else { from + (to - from) * share * share * (3.0 - 2.0 * share) }
 }
 
 /// A part of a way that is driven without a stop, in one direction.
@@ -119,7 +124,7 @@ impl Leg {
                     middle,
                     end: pose,
                     curvature: a.curvature + share * (b.curvature - a.curvature),
-                    level: a.level + share * (b.level - a.level),
+                    level: level_between([a.level, b.level], share),
                 });
             }
             ends
@@ -131,12 +136,13 @@ impl Leg {
         self.pieces(PRECISE).last().map_or(self.start, |piece| piece.end)
     }
 
-    /// The same leg with knots at most `step` m apart.
+    /// The same leg with knots at most `step` m apart, but where the level changes.
     pub(crate) fn refined(&self, step: f64) -> Self {
         let mut knots = self.knots[..1].to_vec();
         for pair in self.knots.windows(2) {
             let [a, b] = [pair[0], pair[1]];
-            let parts = ((b.way - a.way) / step).ceil().max(1.0) as usize;
+            let parts =
+                if a.level == b.level { ((b.way - a.way) / step).ceil().max(1.0) as usize } else { 1 };
             knots.extend((1..=parts).map(|k| {
                 let share = k as f64 / parts as f64;
                 let mix = |from: f64, to: f64| if k == parts { to } else { from + share * (to - from) };

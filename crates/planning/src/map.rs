@@ -103,6 +103,15 @@ impl Map {
         near
     }
 
+    /// The map with another clearance: for a formation that starts nearer to something than it should be.
+    ///
+    /// # Errors
+    /// The clearance is negative or not finite.
+    pub fn with_clearance(&self, clearance: f64) -> Result<Self, InputError> {
+        checked(clearance, clearance >= 0.0, || "the clearance".into(), "0 or more, m")?;
+        Ok(Self { clearance, ..self.clone() })
+    }
+
     /// The map without one of its obstacles.
     #[must_use]
     pub fn without(&self, obstacle: usize) -> Self {

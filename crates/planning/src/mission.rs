@@ -224,10 +224,13 @@ impl SearchEffort {
         for weight in self.weights {
             checked(weight, weight >= 1.0, || "a weight of the estimate".into(), "1 or more")?;
         }
-        checked(self.step, self.step > 0.0, || "the length of a step".into(), "positive, m")?;
-        checked(self.cell, self.cell > 0.0, || "the size of a cell".into(), "positive, m")?;
+        let range = "from 0.01 to 100, m";
+        for (what, value) in [("the length of a step", self.step), ("the size of a cell", self.cell)] {
+            checked(value, (0.01..=100.0).contains(&value), || what.into(), range)?;
+        }
         let headings = self.headings as f64;
-        checked(headings, self.headings >= 4, || "the number of headings".into(), "4 or more")?;
+        let fits = (4..=10_000).contains(&self.headings);
+        checked(headings, fits, || "the number of headings".into(), "from 4 to 10000")?;
         Ok(())
     }
 }

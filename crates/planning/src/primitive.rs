@@ -3,7 +3,7 @@
 //! So a way of primitives has a continuous curvature of bounded rate by itself. Curvatures are multiples of one that the
 //! widest shape can hold, so that it can hold its own largest.
 
-use crate::leg::{CurvatureKnot, Leg, Piece};
+use crate::leg::{CurvatureKnot, Leg, Piece, level_between};
 use crate::trailing::STEP;
 use vocabulary::{Pose, math};
 
@@ -113,7 +113,7 @@ impl Primitive {
         self.pieces.iter().enumerate().map(move |(k, piece)| Piece {
             middle: from.heading + piece.middle,
             end: placed(from, turned, piece.end),
-            level: levels[0] + (levels[1] - levels[0]) * (k as f64 + 1.0) / n,
+            level: level_between(levels, (k as f64 + 1.0) / n),
             ..*piece
         })
     }

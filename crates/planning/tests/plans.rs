@@ -28,13 +28,15 @@ struct Walk {
     positions: Vec<[f64; 2]>,
     /// Velocity per speed of the lead.
     velocities: Vec<[f64; 2]>,
+    /// Way of the lead in a step, m.
+    step: f64,
 }
 
 impl Walk {
     fn new(model: &FormationModel, lead: Pose) -> Self {
         let n = model.robots();
         let held = vec![[lead.heading, 0.0]; n - 1];
-        Self { lead, held, positions: vec![[0.0; 2]; n], velocities: vec![[0.0; 2]; n] }
+        Self { lead, held, positions: vec![[0.0; 2]; n], velocities: vec![[0.0; 2]; n], step: 0.0 }
     }
 
     fn place(&mut self, model: &FormationModel, level: f64, rate: f64) {
@@ -47,7 +49,7 @@ impl Walk {
             let share = level - below as f64;
             let [x, y] = [0, 1].map(|i| a[i] + share * (b[i] - a[i]));
             let [dx, dy] = [0, 1].map(|i| rate * (b[i] - a[i]));
-            let turn = self.held_rate(model, k)[0];
+            let turn = self.turn(model, k);
             let (sin, cos) = math::sin_cos(self.held[k][0]);
             let [px, py] = [cos * x - sin * y, sin * x + cos * y];
             let leader = follower.leader;
@@ -57,10 +59,22 @@ impl Walk {
         }
     }
 
+    /// dθ̄ per metre of the lead. Without a filter θ̄ is the direction in which the leader drives.
+    fn turn(&mut self, model: &FormationModel, follower: usize) -> f64 {
+        let of = &model.followers()[follower];
+        if of.heading.is_some() {
+            return self.held_rate(model, follower)[0];
+        }
+        let [vx, vy] = self.velocities[of.leader];
+        let (before, now) = (self.held[follower][0], math::atan2(vy, vx));
+        self.held[follower][0] = now;
+        if self.step > 0.0 { wrap(now - before) / self.step } else { 0.0 }
+    }
+
     /// dθ̄ and dκ̄ per metre of the lead.
     fn held_rate(&self, model: &FormationModel, follower: usize) -> [f64; 2] {
         let of = &model.followers()[follower];
-        let filter = of.heading.expect("a filter");
+        let Some(filter) = of.heading else { return [0.0; 2] };
         let [vx, vy] = self.velocities[of.leader];
         let (length, lag) = (filter.length, filter.lag);
         let speed = math::hypot(vx, vy);
@@ -78,17 +92,19 @@ impl Walk {
             let span = b.way - a.way;
             let steps = (span / 2e-3).ceil();
             let step = span / steps;
+            self.step = step;
             for k in 0..steps as usize {
                 let share = (k as f64 + 0.5) / steps;
                 let curvature = a.curvature + share * (b.curvature - a.curvature);
-                let level = a.level + share * (b.level - a.level);
+                let level = a.level + share * share * (3.0 - 2.0 * share) * (b.level - a.level);
+                let rate = 6.0 * share * (1.0 - share) * (b.level - a.level) / span;
                 let direction = leg.direction();
                 let heading = self.lead.heading + 0.5 * direction * step * curvature;
                 let (sin, cos) = math::sin_cos(heading);
                 self.lead.x += direction * step * cos;
                 self.lead.y += direction * step * sin;
                 self.lead.heading += direction * step * curvature;
-                self.place(model, level, (b.level - a.level) / span);
+                self.place(model, level, rate);
                 for follower in 0..self.held.len() {
                     let rate = self.held_rate(model, follower);
                     for (value, rate) in self.held[follower].iter_mut().zip(rate) {
@@ -270,7 +286,7 @@ fn the_same_request_gives_the_same_plan() {
 }
 
 /// Computed on x86-64; every other machine has to find the same.
-const DIGESTS: [&str; 2] = ["", ""];
+const DIGESTS: [&str; 2] = ["dcf88cb7c0d57015", "a87aedb6ba8e7731"];
 
 fn empty(side: f64) -> Map {
     let ground = Convex::rectangle(Pose::new(0.5 * side, 0.5 * side, 0.0), [0.5 * side; 2]).expect("a box");
@@ -526,6 +542,112 @@ fn a_plan_begins_in_the_middle_of_another() {
     let request = PlanRequest { held: Some(&few), ..request };
     let refused = plan(&request, &mut |_| false).expect_err("refused");
     assert_eq!(refused, PlanError::Input(InputError::WrongCount { found: 2, expected: 6 }));
+}
+
+/// Places that are held against leaders' own headings: every turn is passed on at once. Nobody files in so.
+#[test]
+fn followers_without_filters_stay_clear() {
+    let three = (0..4).fold(trial::vee(), |model, _| model.without_last().expect("more than one"));
+    let (model, limits) = (trial::without_filters(&three).with_levels(0..1), TravelLimits::default());
+    for (seed, smooths) in [(1, true), (2, false), (3, false), (4, true)] {
+        let map = trial::map(seed, 30);
+        let mut request = PlanRequest::new(&map, &model, limits, trial::mission());
+        request.effort.smooths = smooths;
+        let found = plan(&request, &mut |_| false).unwrap_or_else(|error| panic!("{seed}: {error}"));
+        let [least, _] = walked(&map, &model, &found);
+        println!("{seed}: {least:.4} m");
+        assert!(least >= trial::CLEARANCE, "{seed}: {least}");
+        within_limits(&found, &limits);
+    }
+}
+
+/// From anywhere to anywhere, at any heading and level: whatever is found can be driven.
+#[test]
+fn plans_between_random_poses_hold_what_they_promise() {
+    let (model, limits) = (trial::vee(), TravelLimits::default());
+    let mut draws = trial::Draws::new(77);
+    let mut found = 0;
+    for seed in 0..24 {
+        let map = trial::map(100 + seed, 25);
+        let mut pose =
+            || Pose::new(draws.between(3.0, 37.0), draws.between(3.0, 37.0), draws.between(-PI, PI));
+        let (from, to) = (pose(), pose());
+        let start = PlanStart { level: seed as usize % 5, ..PlanStart::at(from) };
+        let mut goal = if seed % 3 == 0 { PlanGoal::to([to.x, to.y]) } else { PlanGoal::at(to) };
+        goal.level = (seed % 4 == 1).then_some(4 - seed as usize % 5);
+        let mission = Mission { start, goal };
+        let mut request = PlanRequest::new(&map, &model, limits, mission);
+        request.effort.expansions = 8000;
+        let Ok(plan) = plan(&request, &mut |_| false) else { continue };
+        found += 1;
+        let [least, _] = walked(&map, &model, &plan);
+        assert!(least >= trial::CLEARANCE, "{seed}: {least}");
+        within_limits(&plan, &limits);
+        reaches(&plan, &mission);
+    }
+    println!("{found} plans");
+    assert!(found >= 8, "{found}");
+}
+
+/// At a wall, heading away from it: there is no room to turn.
+#[test]
+fn a_heading_that_no_turning_circle_reaches_is_said_to_be_so() {
+    let map = empty(40.0);
+    let model = FormationModel::alone(BodyShape::Disc { radius: 0.2 }).expect("a robot");
+    let mission = Mission {
+        start: PlanStart::at(Pose::new(20.0, 20.0, 0.0)),
+        goal: PlanGoal::at(Pose::new(39.4, 20.0, PI)),
+    };
+    let limits = TravelLimits { outer: 0.8, ..TravelLimits::default() };
+    let found = no_way(plan(&PlanRequest::new(&map, &model, limits, mission), &mut |_| false));
+    assert_eq!(found.reason, NoWayReason::HeadingUnreachable);
+}
+
+/// Whatever numbers are given, there is an answer.
+#[test]
+fn nothing_that_is_asked_brings_the_planner_down() {
+    let extremes =
+        [0.0, -0.0, 1e-300, 1e-9, 0.3, 1.0, 7.0, 1e9, 1e300, -1.0, -1e300, f64::INFINITY, f64::NAN];
+    let mut draws = trial::Draws::new(5);
+    let map = trial::map(1, 30);
+    let model = trial::vee();
+    let alone = FormationModel::alone(BodyShape::Disc { radius: 0.2 }).expect("a robot");
+    for k in 0..400 {
+        let mut draw = |usual: f64| {
+            let index = draws.between(0.0, 5.0 * extremes.len() as f64) as usize;
+            extremes.get(index).copied().unwrap_or(usual)
+        };
+        let limits = TravelLimits {
+            curvature: draw(0.9),
+            sharpness: draw(0.3),
+            steering: draw(0.5),
+            speed: draw(0.8),
+            acceleration: draw(0.3),
+            braking: draw(0.3),
+            lateral: draw(1.0),
+            outer: draw(1.6),
+            turning: draw(0.8),
+            follower_curvature: (k % 5 == 0).then(|| draw(0.9)),
+            place_rate: draw(0.25),
+            place_acceleration: draw(0.4),
+            reverses: k % 4 == 0,
+        };
+        let pose = Pose::new(draw(8.0), draw(8.0), draw(0.8));
+        let start = PlanStart { pose, level: k % 6, curvature: draw(0.0), speed: draw(0.0) };
+        let mut goal = PlanGoal::at(Pose::new(draw(20.0), draw(20.0), draw(1.0)));
+        (goal.tolerance, goal.heading_tolerance) = (draw(0.1), draw(0.1));
+        let who = if k % 2 == 0 { &alone } else { &model };
+        let mut request = PlanRequest::new(&map, who, limits, Mission { start, goal });
+        request.effort.expansions = 60;
+        request.effort.improvement = 20;
+        (request.effort.step, request.effort.cell) = (draw(1.25), draw(0.6));
+        if let Ok(plan) = plan(&request, &mut |_| false) {
+            assert!(
+                plan.points.iter().all(|point| point.pose.x.is_finite() && point.time.is_finite()),
+                "{k}"
+            );
+        }
+    }
 }
 
 /// Cars of 0.6 m by 0.3 m: every corner stays clear, and none turns more sharply than its wheels do.
