@@ -93,8 +93,12 @@ impl MotionPlan {
         let b = self.points.get(after.min(self.points.len().checked_sub(1)?))?;
         let a = self.points.get(after.saturating_sub(1))?;
         let share = if b.way > a.way { ((way - a.way) / (b.way - a.way)).clamp(0.0, 1.0) } else { 0.0 };
-        let time = a.time + share * (b.time - a.time);
-        Some(PlanPoint { time, speed: a.speed + share * (b.speed - a.speed), ..a.between(b, share) })
+        let square = |point: &PlanPoint| point.speed * point.speed;
+        let speed = (square(a) + share * (square(b) - square(a))).sqrt();
+        let mean = 0.5 * (a.speed.abs() + speed);
+        let time = a.time + if mean > 0.0 { share * (b.way - a.way) / mean } else { 0.0 };
+        let side = if a.speed + b.speed < 0.0 { -1.0 } else { 1.0 };
+        Some(PlanPoint { time, speed: side * speed, ..a.between(b, share) })
     }
 
     /// A number that two plans share only if they are the same to the last bit.
@@ -275,6 +279,15 @@ impl Course {
         Self { points, bounds }
     }
 
+    /// Followers' speeds are means over pieces: within one they are larger by about half of what they change by to the next.
+    fn raise_ratios(&mut self) {
+        let means: Vec<f64> = self.bounds.iter().map(|bound| bound.ratio).collect();
+        for (k, bound) in self.bounds.iter_mut().enumerate() {
+            let [before, after] = [means[k.saturating_sub(1)], means[(k + 1).min(means.len() - 1)]];
+            bound.ratio += 0.5 * (before - means[k]).abs().max((after - means[k]).abs());
+        }
+    }
+
     /// Fills in speeds and times.
     fn drive(&mut self, request: &PlanRequest<'_>, leg: &Leg, start: f64) {
         for ramp in level_ramps(&leg.knots, request.model, &request.limits) {
@@ -284,6 +297,7 @@ impl Course {
                 }
             }
         }
+        self.raise_ratios();
         let found = speeds(&self.bounds, &request.limits, start);
         let mut time = 0.0;
         for (k, speed) in found.iter().enumerate() {

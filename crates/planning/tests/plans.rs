@@ -127,18 +127,21 @@ fn clearance(map: &Map, model: &FormationModel, walk: &Walk) -> f64 {
     (0..model.robots()).map(of).fold(f64::INFINITY, f64::min)
 }
 
-/// Least clearance and largest speed per speed of the lead on the way of a plan.
+/// Least clearance and the largest speed of a follower, m/s, on the way of a plan.
 fn walked(map: &Map, model: &FormationModel, plan: &MotionPlan) -> [f64; 2] {
     let mut walk = Walk::new(model, plan.legs[0].start);
     let (mut least, mut fastest) = (f64::INFINITY, 0.0_f64);
-    let mut count = 0;
+    let (mut count, mut gone) = (0, 0.0);
     for leg in &plan.legs {
-        walk.leg(model, leg, &mut |walk, _| {
+        walk.leg(model, leg, &mut |walk, step| {
             count += 1;
+            let speed = plan.at_way(gone + 0.5 * step).map_or(0.0, |point| point.speed.abs());
+            gone += step;
             if count % 10 == 0 {
                 least = least.min(clearance(map, model, walk));
             }
-            fastest = walk.velocities.iter().fold(fastest, |most, [x, y]| most.max(math::hypot(*x, *y)));
+            let followers = walk.velocities[1..].iter();
+            fastest = followers.fold(fastest, |most, [x, y]| most.max(speed * math::hypot(*x, *y)));
         });
     }
     [least, fastest]
@@ -164,9 +167,9 @@ fn nothing_is_touched_and_no_limit_exceeded() {
         let plan = plan(&request, &mut |_| false).unwrap_or_else(|error| panic!("{seed} {count}: {error}"));
         assert!(plan.smoothed == smooths, "{seed} {count}");
         let [least, fastest] = walked(&map, &model, &plan);
-        println!("{seed} {count}: clearance {least:.4} m, fastest {fastest:.3}");
+        println!("{seed} {count}: clearance {least:.4} m, fastest {fastest:.3} m/s");
         assert!(least >= trial::CLEARANCE, "{seed} {count}: {least}");
-        assert!(fastest <= limits.outer / limits.turning + 0.01, "{seed} {count}: {fastest}");
+        assert!(fastest <= limits.outer, "{seed} {count}: {fastest}");
         within_limits(&plan, &limits);
         reaches(&plan, &trial::mission());
     }
@@ -705,6 +708,27 @@ fn a_stop_from_outside_is_obeyed() {
 }
 
 #[test]
+fn a_search_that_is_stopped_later_has_the_plan_that_it_found() {
+    let map = trial::map(3, 100);
+    let model = trial::vee();
+    let request = PlanRequest::new(&map, &model, TravelLimits::default(), trial::mission());
+    let whole = plan(&request, &mut |_| false).expect("a plan");
+    let mut found = 0;
+    for most in [500, 1000, 2000, 4000] {
+        match plan(&request, &mut |swept| swept >= most) {
+            Ok(plan) => {
+                found += 1;
+                assert!(
+                    plan.expansions <= most.max(64) + 64 && plan.searched_cost >= whole.searched_cost - 1e-9
+                );
+            }
+            Err(error) => assert_eq!(error.to_string(), "the search was stopped before it found a way"),
+        }
+    }
+    assert!(found > 0);
+}
+
+#[test]
 fn ten_thousand_obstacles_are_planned_among() {
     let map = trial::spread(1, 10_000, 400.0);
     let found = vee_plan(&map).expect("a plan");
@@ -736,5 +760,5 @@ fn a_half_turn_is_planned_with_the_footprint_in_the_turn() {
         .expect("a plan");
     within_limits(&found, &limits);
     let [least, fastest] = walked(&map, &model, &found);
-    assert!(least >= 0.25 && fastest <= 2.0, "{least} {fastest}");
+    assert!(least >= 0.25 && fastest <= limits.outer, "{least} {fastest}");
 }
