@@ -113,6 +113,7 @@ const ARROWS: [(&str, &[&str]); 22] = [
             "recording",
             "rendering",
             "footage",
+            "cli",
         ],
     ),
 ];
