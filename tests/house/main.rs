@@ -114,6 +114,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
             "recording",
             "rendering",
             "footage",
+            "cli",
         ],
     ),
 ];

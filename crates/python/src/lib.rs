@@ -10,6 +10,7 @@ mod law;
 mod numbers;
 mod picture_cache;
 mod pictures;
+mod program;
 mod run;
 mod scene;
 mod simulation;
@@ -24,6 +25,8 @@ use pyo3::pymodule;
 mod _echelon {
     #[pymodule_export]
     use crate::copies::PyCopies;
+    #[pymodule_export]
+    use crate::program::program;
     #[pymodule_export]
     use crate::run::PyRun;
     #[pymodule_export]

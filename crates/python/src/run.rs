@@ -1,7 +1,7 @@
 //! A run to its end: its tables, its metrics, what became of its expectations.
 
 use crate::error::{call_package, of_study};
-use crate::table::{PyTable, of_arrow};
+use crate::table::{PyTable, batch, of_arrow};
 use crate::watch::detached;
 use metrics::{JudgedExpectation, Metrics};
 use pyo3::exceptions::PyOSError;
@@ -76,9 +76,9 @@ impl PyRun {
                 for record in part {
                     table.push(&self.fleet, record);
                 }
-                batches.push(table.take()?);
+                batches.push(batch(table.take())?);
             }
-            let first = if batches.is_empty() { table.take()? } else { batches.remove(0) };
+            let first = if batches.is_empty() { batch(table.take())? } else { batches.remove(0) };
             Ok(PyTable::new(kind.word(), first, batches))
         });
         let table = Py::new(py, built.map_err(|error| of_arrow(&error))?)?;

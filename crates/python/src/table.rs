@@ -3,13 +3,15 @@
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::types::Float64Type;
-use arrow_array::{RecordBatch, RecordBatchIterator};
-use arrow_schema::{ArrowError, DataType};
+use arrow_array::{ArrayRef, BooleanArray, Float64Array, RecordBatch, RecordBatchIterator, StringArray};
+use arrow_schema::{ArrowError, DataType, Field, Schema};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyList};
+use recording::Column;
 use std::ffi::CStr;
+use std::sync::Arc;
 
 /// The name that the Arrow PyCapsule interface gives to streams.
 const STREAM: &CStr = c"arrow_array_stream";
@@ -31,6 +33,23 @@ impl PyTable {
     fn batches(&self) -> impl Iterator<Item = &RecordBatch> {
         std::iter::once(&self.first).chain(&self.rest)
     }
+}
+
+/// Rows as Arrow holds them.
+///
+/// # Errors
+/// [`ArrowError`] where the columns differ in length.
+pub(crate) fn batch(columns: Vec<(&'static str, Column)>) -> Result<RecordBatch, ArrowError> {
+    let array = |(name, column)| {
+        let array: ArrayRef = match column {
+            Column::Text(texts) => Arc::new(StringArray::from(texts)),
+            Column::Number(numbers) => Arc::new(Float64Array::from(numbers)),
+            Column::Flag(flags) => Arc::new(BooleanArray::from(flags)),
+        };
+        (Field::new(name, array.data_type().clone(), false), array)
+    };
+    let (fields, arrays): (Vec<_>, _) = columns.into_iter().map(array).unzip();
+    RecordBatch::try_new(Arc::new(Schema::new(fields)), arrays)
 }
 
 /// An error of Arrow as an exception.

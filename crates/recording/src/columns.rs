@@ -18,8 +18,11 @@ use Cell::{Flag, Number, Text};
 /// Takes the values of a row one after the other, each with the name of its column, which ends in its unit.
 pub(crate) type Row<'a> = dyn FnMut(&'static str, Cell<'_>) + 'a;
 
+/// A column and its name.
+pub(crate) type Named = (&'static str, Column);
+
 /// The columns of a table, empty, and their names.
-pub(crate) fn empty(kind: TableKind) -> Vec<(&'static str, Column)> {
+pub(crate) fn empty(kind: TableKind) -> Vec<Named> {
     let mut columns = vec![];
     let mut add = |name, cell: Cell<'_>| {
         let column = match cell {

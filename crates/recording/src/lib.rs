@@ -16,6 +16,7 @@ mod error;
 pub mod log;
 mod manifest;
 mod numbers;
+mod parquet_file;
 mod run;
 mod table;
 

@@ -4,16 +4,10 @@
 //! full, and the parts become one file when the run ends.
 
 use crate::Error;
-use crate::columns::{self, Cell, Row};
-use arrow_array::{ArrayRef, BooleanArray, Float64Array, RecordBatch, StringArray};
-use arrow_schema::{ArrowError, DataType, Field, Schema};
-use parquet::arrow::ArrowWriter;
-use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
-use parquet::basic::{Compression, ZstdLevel};
-use parquet::file::properties::WriterProperties;
+use crate::columns::{self, Cell, Named, Row};
+use crate::parquet_file::{self, ParquetWriter};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use vocabulary::{EntityId, FleetInfo, Mobility, StepRecord, Word, words};
 
 words! {
@@ -51,7 +45,7 @@ pub enum Column {
 
 /// Samples a part holds: at 10 ms, half a run of the paper.
 const SAMPLES_PER_PART: usize = 750;
-/// Rows of a Parquet file that are in memory at once while it is written.
+/// Rows of the whole table that are in memory before they are written as a group.
 const ROWS_PER_GROUP: usize = 1 << 17;
 
 impl TableKind {
@@ -125,7 +119,7 @@ impl TableKind {
 /// Gathers the rows of one table in memory.
 pub struct TableBuilder {
     kind: TableKind,
-    columns: Vec<(&'static str, Column)>,
+    columns: Vec<Named>,
 }
 
 impl TableBuilder {
@@ -148,19 +142,19 @@ impl TableBuilder {
         });
     }
 
-    /// Takes the rows out; the table is empty then.
-    ///
-    /// # Errors
-    /// [`ArrowError`] where the columns do not make a batch.
-    pub fn take(&mut self) -> Result<RecordBatch, ArrowError> {
-        let values = self.columns.iter_mut().map(|(_, column)| column.take()).collect();
-        RecordBatch::try_new(schema(self.kind), values)
+    /// Takes the rows out, column by column, each with its name; the table is empty then.
+    pub fn take(&mut self) -> Vec<(&'static str, Column)> {
+        std::mem::replace(&mut self.columns, columns::empty(self.kind))
+    }
+
+    /// Rows so far.
+    fn len(&self) -> usize {
+        self.columns.first().map_or(0, |(_, column)| column.len())
     }
 
     /// The rows as text, cell by cell.
     fn texts(&self) -> impl Iterator<Item = impl Iterator<Item = String>> {
-        let rows = self.columns.first().map_or(0, |(_, column)| column.len());
-        (0..rows).map(|row| self.columns.iter().map(move |(_, column)| column.text(row)))
+        (0..self.len()).map(|row| self.columns.iter().map(move |(_, column)| column.text(row)))
     }
 }
 
@@ -219,12 +213,9 @@ impl TableWriter {
             return Ok(());
         }
         self.flush_csv()?;
-        let path = self.part(self.parts);
-        let draft = path.with_extension("tmp");
-        let batch = self.table.take().map_err(Error::table(&path))?;
-        write_parquet(&draft, &path, &batch.schema(), |writer| {
-            writer.write(&batch).map_err(Error::table(&path))
-        })?;
+        let mut part = ParquetWriter::create(&self.part(self.parts), &self.table.columns)?;
+        part.write(&mut self.table.columns)?;
+        part.close()?;
         self.parts += 1;
         self.samples = 0;
         Ok(())
@@ -242,18 +233,15 @@ impl TableWriter {
     /// Makes one file of all parts.
     pub(crate) fn finish(&mut self) -> Result<(), Error> {
         self.flush()?;
-        let (path, draft) = (self.path("parquet"), self.path("parquet.tmp"));
-        let schema = schema(self.kind);
-        let all_parts = |writer: &mut ArrowWriter<File>| {
-            for index in 0..self.parts {
-                for batch in open(&self.part(index))? {
-                    let batch = batch.map_err(Error::table(&path))?;
-                    writer.write(&batch).map_err(Error::table(&path))?;
-                }
+        let mut whole = ParquetWriter::create(&self.path("parquet"), &self.table.columns)?;
+        for index in 0..self.parts {
+            parquet_file::read(&self.part(index), &mut self.table.columns)?;
+            if self.table.len() >= ROWS_PER_GROUP {
+                whole.write(&mut self.table.columns)?;
             }
-            Ok(())
-        };
-        write_parquet(&draft, &path, &schema, all_parts)?;
+        }
+        whole.write(&mut self.table.columns)?;
+        whole.close()?;
         fs::remove_dir_all(self.parts_folder()).map_err(Error::io("remove", &self.parts_folder()))
     }
 }
@@ -274,60 +262,6 @@ impl Column {
             Self::Flag(v) => v[row].to_string(),
         }
     }
-
-    fn data_type(&self) -> DataType {
-        match self {
-            Self::Text(_) => DataType::Utf8,
-            Self::Number(_) => DataType::Float64,
-            Self::Flag(_) => DataType::Boolean,
-        }
-    }
-
-    /// Moves the values into an array.
-    fn take(&mut self) -> ArrayRef {
-        match self {
-            Self::Text(v) => Arc::new(StringArray::from(std::mem::take(v))),
-            Self::Number(v) => Arc::new(Float64Array::from(std::mem::take(v))),
-            Self::Flag(v) => Arc::new(BooleanArray::from(std::mem::take(v))),
-        }
-    }
-}
-
-fn schema(kind: TableKind) -> Arc<Schema> {
-    let field = |(name, column): (&'static str, Column)| Field::new(name, column.data_type(), false);
-    Arc::new(Schema::new(columns::empty(kind).into_iter().map(field).collect::<Vec<_>>()))
-}
-
-/// Writes a whole Parquet file as `draft` and renames it to `path`; where that fails, no draft is left.
-fn write_parquet(
-    draft: &Path,
-    path: &Path,
-    schema: &Arc<Schema>,
-    fill: impl FnOnce(&mut ArrowWriter<File>) -> Result<(), Error>,
-) -> Result<(), Error> {
-    let write = || {
-        let file = File::create(draft).map_err(Error::io("create", draft))?;
-        let properties = WriterProperties::builder()
-            .set_compression(Compression::ZSTD(ZstdLevel::default()))
-            .set_max_row_group_row_count(Some(ROWS_PER_GROUP))
-            .build();
-        let mut writer =
-            ArrowWriter::try_new(file, schema.clone(), Some(properties)).map_err(Error::table(draft))?;
-        fill(&mut writer)?;
-        writer.close().map_err(Error::table(path))?;
-        fs::rename(draft, path).map_err(Error::io("write", path))
-    };
-    write().inspect_err(|_| {
-        // The draft may not exist; the first error is the one to tell.
-        let _ = fs::remove_file(draft);
-    })
-}
-
-fn open(path: &Path) -> Result<parquet::arrow::arrow_reader::ParquetRecordBatchReader, Error> {
-    let file = File::open(path).map_err(Error::io("open", path))?;
-    ParquetRecordBatchReaderBuilder::try_new(file)
-        .and_then(ParquetRecordBatchReaderBuilder::build)
-        .map_err(Error::table(path))
 }
 
 /// Reads a table of the run in `folder` back, in the order of its columns; of a run that was killed, the
@@ -342,14 +276,7 @@ pub fn read_table(folder: &Path, kind: TableKind) -> Result<Vec<Column>, Error> 
         if whole.exists() { vec![whole] } else { parts(&tables.join(kind.word()).with_extension("parts"))? };
     let mut columns = columns::empty(kind);
     for path in files {
-        for batch in open(&path)? {
-            let batch = batch.map_err(Error::table(&path))?;
-            for (name, column) in &mut columns {
-                append(column, batch.column_by_name(name)).ok_or_else(|| {
-                    Error::table(&path)(format!("column `{name}` is missing or of another type"))
-                })?;
-            }
-        }
+        parquet_file::read(&path, &mut columns)?;
     }
     Ok(columns.into_iter().map(|(_, column)| column).collect())
 }
@@ -360,18 +287,4 @@ fn parts(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     files.retain(|path| path.extension().is_some_and(|e| e == "parquet"));
     files.sort();
     Ok(files)
-}
-
-fn append(column: &mut Column, array: Option<&ArrayRef>) -> Option<()> {
-    let any = array?.as_any();
-    match column {
-        Column::Text(v) => {
-            v.extend(any.downcast_ref::<StringArray>()?.iter().map(|t| t.unwrap_or_default().to_owned()));
-        }
-        Column::Number(v) => v.extend(any.downcast_ref::<Float64Array>()?.values().iter()),
-        Column::Flag(v) => {
-            v.extend(any.downcast_ref::<BooleanArray>()?.iter().map(Option::unwrap_or_default));
-        }
-    }
-    Some(())
 }

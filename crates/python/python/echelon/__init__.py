@@ -22,6 +22,7 @@ __version__ : str
     Version of the package.
 """
 
+from . import _driver  # noqa: F401  before any driver is loaded
 from ._echelon import EDGE_COLUMNS, INPUTS, ROBOT_COLUMNS, SIGNALS, Run, Scene, Simulation, Table, __version__, scenes
 from ._errors import (
     BusyError,

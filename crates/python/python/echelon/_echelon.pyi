@@ -21,6 +21,7 @@ __all__ = [
     "Simulation",
     "Table",
     "__version__",
+    "program",
     "scenes",
 ]
 __version__: str
@@ -31,6 +32,12 @@ SIGNALS: list[str]
 
 def scenes() -> dict[str, str]:
     """The scenes that come with the package."""
+
+def program(arguments: list[str]) -> int:
+    """Runs the program `echelon` with these arguments, of which the first is its name, and returns its exit code.
+
+    Help, and arguments that are none, end the process.
+    """
 
 @final
 class Scene:

@@ -1,0 +1,143 @@
+//! Parquet files of the columns that tables have: text, numbers and flags, none of them ever absent.
+
+use crate::table::Column;
+use crate::{Error, columns::Named};
+use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
+use parquet::column::reader::ColumnReader;
+use parquet::column::writer::ColumnWriter;
+use parquet::data_type::ByteArray;
+use parquet::errors::{ParquetError, Result};
+use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::types::Type;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A Parquet file while it is written: under a draft's name, until it is whole.
+pub(crate) struct ParquetWriter {
+    draft: PathBuf,
+    path: PathBuf,
+    file: SerializedFileWriter<File>,
+}
+
+impl ParquetWriter {
+    /// Begins the file at `path`, which appears when it is closed. It has the columns of `columns`.
+    pub(crate) fn create(path: &Path, columns: &[Named]) -> std::result::Result<Self, Error> {
+        let draft = path.with_extension("tmp");
+        let file = File::create(&draft).map_err(Error::io("create", &draft))?;
+        let properties =
+            WriterProperties::builder().set_compression(Compression::ZSTD(ZstdLevel::default())).build();
+        let file = schema(columns)
+            .and_then(|schema| SerializedFileWriter::new(file, schema, Arc::new(properties)))
+            .map_err(Error::table(&draft))?;
+        Ok(Self { draft, path: path.to_owned(), file })
+    }
+
+    /// Writes rows as a group, and takes them out of `columns`.
+    pub(crate) fn write(&mut self, columns: &mut [Named]) -> std::result::Result<(), Error> {
+        write_group(&mut self.file, columns).map_err(Error::table(&self.path))
+    }
+
+    /// Completes the file and gives it its name.
+    pub(crate) fn close(mut self) -> std::result::Result<(), Error> {
+        self.file.finish().map_err(Error::table(&self.path))?;
+        fs::rename(&self.draft, &self.path).map_err(Error::io("write", &self.path))
+    }
+}
+
+impl Drop for ParquetWriter {
+    fn drop(&mut self) {
+        // A file that has its name left no draft; what else goes wrong here says less than the first error did.
+        let _ = fs::remove_file(&self.draft);
+    }
+}
+
+/// Appends the rows of the file at `path` to `columns`, each found by its name.
+pub(crate) fn read(path: &Path, columns: &mut [Named]) -> std::result::Result<(), Error> {
+    let file = File::open(path).map_err(Error::io("open", path))?;
+    let reader = SerializedFileReader::new(file).map_err(Error::table(path))?;
+    let schema = reader.metadata().file_metadata().schema_descr_ptr();
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group).map_err(Error::table(path))?;
+        for (name, column) in &mut *columns {
+            let index = schema.columns().iter().position(|described| described.name() == *name);
+            let read = index.map_or(Ok(false), |index| read_column(&*group, index, column));
+            if !read.map_err(Error::table(path))? {
+                let message = format!("column `{name}` is missing or of another type");
+                return Err(Error::table(path)(message));
+            }
+        }
+    }
+    Ok(())
+}
+
+fn schema(columns: &[Named]) -> Result<Arc<Type>> {
+    let field = |(name, column): &Named| {
+        let (physical, logical) = match column {
+            Column::Text(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
+            Column::Number(_) => (Physical::DOUBLE, None),
+            Column::Flag(_) => (Physical::BOOLEAN, None),
+        };
+        Type::primitive_type_builder(name, physical)
+            .with_repetition(Repetition::REQUIRED)
+            .with_logical_type(logical)
+            .build()
+            .map(Arc::new)
+    };
+    let fields = columns.iter().map(field).collect::<Result<_>>()?;
+    Type::group_type_builder("table").with_fields(fields).build().map(Arc::new)
+}
+
+fn write_group(file: &mut SerializedFileWriter<File>, columns: &mut [Named]) -> Result<()> {
+    let mut group = file.next_row_group()?;
+    for (_, column) in columns {
+        write_column(&mut group, column)?;
+    }
+    group.close().map(drop)
+}
+
+fn write_column(group: &mut SerializedRowGroupWriter<'_, File>, column: &mut Column) -> Result<()> {
+    let Some(mut writer) = group.next_column()? else {
+        return Err(ParquetError::General("more columns than the file has".into()));
+    };
+    match (writer.untyped(), column) {
+        (ColumnWriter::ByteArrayColumnWriter(writer), Column::Text(texts)) => {
+            let bytes: Vec<_> =
+                std::mem::take(texts).into_iter().map(|text| ByteArray::from(text.into_bytes())).collect();
+            writer.write_batch(&bytes, None, None)?;
+        }
+        (ColumnWriter::DoubleColumnWriter(writer), Column::Number(numbers)) => {
+            writer.write_batch(&std::mem::take(numbers), None, None)?;
+        }
+        (ColumnWriter::BoolColumnWriter(writer), Column::Flag(flags)) => {
+            writer.write_batch(&std::mem::take(flags), None, None)?;
+        }
+        _ => return Err(ParquetError::General("a column of another type than the file has".into())),
+    }
+    writer.close()
+}
+
+/// Appends a column of a group of rows; `false` if it is of another type, or lacks values.
+fn read_column(group: &dyn RowGroupReader, index: usize, column: &mut Column) -> Result<bool> {
+    let rows = usize::try_from(group.metadata().num_rows())?;
+    let read = match (group.get_column_reader(index)?, column) {
+        (ColumnReader::ByteArrayColumnReader(mut reader), Column::Text(texts)) => {
+            let mut bytes = vec![];
+            reader.read_records(rows, None, None, &mut bytes)?;
+            for text in &bytes {
+                texts.push(text.as_utf8()?.to_owned());
+            }
+            bytes.len()
+        }
+        (ColumnReader::DoubleColumnReader(mut reader), Column::Number(numbers)) => {
+            reader.read_records(rows, None, None, numbers)?.1
+        }
+        (ColumnReader::BoolColumnReader(mut reader), Column::Flag(flags)) => {
+            reader.read_records(rows, None, None, flags)?.1
+        }
+        _ => return Ok(false),
+    };
+    Ok(read == rows)
+}
