@@ -204,6 +204,10 @@ impl EventDraft<'_> {
             return self.follow(name, leader, reporter);
         }
         if let Some(path) = path {
+            if path.value.is_planned() {
+                reporter.report(path.span, "ways to goals are planned before a run begins: give the path of an event as it is driven");
+                return None;
+            }
             if let Some(robot) = self.robot(&name) {
                 check_path(path, &robot.vehicle, reporter);
             }

@@ -1,11 +1,13 @@
 //! How a lead robot's path is written.
 
 use crate::{
-    Path, SpeedProfile,
+    Goal, Path, SpeedProfile, Travel,
+    names::POSE,
     table_file::{ROWS_FILE, check_rising},
     text::{
         Couple, Flag, Form, Node, Reporter, Triple,
         form::Number,
+        integer,
         keys,
         keys::one_of,
         kinds::{Kind, Kinds},
@@ -14,7 +16,7 @@ use crate::{
     },
 };
 use serde_json::{Value as Json, json};
-use vocabulary::math;
+use vocabulary::{math, wrap};
 
 /// Time of a row.
 pub(crate) const TIME: Number = number("s").from(0.0);
@@ -105,6 +107,67 @@ keys! {
         file: Vec<[f64; 3]> = ROWS_FILE, optional;
         /// Rows of [time in s, speed in m/s, turn rate in rad/s], time rising from 0; or give `file`.
         rows: Vec<[f64; 3]> = list(Triple(TIME, SPEED, TURN_RATE), 1, MOST_ROWS), optional;
+    }
+}
+
+keys! {
+    /// To a goal, by a way that is planned for the whole formation; there it stays.
+    struct GoalKeys {
+        /// Where to: [x, y] in m, or [x, y, heading].
+        pose: Goal = GoalForm, required;
+        /// Speed of the lead where nothing slows it, m/s.
+        speed: f64 = TRAVEL_SPEED, or(0.8);
+        /// How it gains speed and brakes, m/s².
+        acceleration: f64 = TRAVEL_ACCELERATION, or(0.3);
+        /// How far all robots stay off what stands there, m.
+        clearance: f64 = CLEARANCE, or(0.25);
+    }
+}
+
+keys! {
+    /// To one goal after the other, by ways that are planned for the whole formation.
+    struct TourKeys {
+        /// Where to, one after the other: each [x, y] in m, or [x, y, heading].
+        goals: Vec<Goal> = list(GoalForm, 1, MOST_GOALS), required;
+        /// How long it stays at each, s.
+        pause: f64 = TIME, or(0.0);
+        /// How often it goes through all of them.
+        rounds: u32 = integer(1, 1000), or(1);
+        /// Speed of the lead where nothing slows it, m/s.
+        speed: f64 = TRAVEL_SPEED, or(0.8);
+        /// How it gains speed and brakes, m/s².
+        acceleration: f64 = TRAVEL_ACCELERATION, or(0.3);
+        /// How far all robots stay off what stands there, m.
+        clearance: f64 = CLEARANCE, or(0.25);
+    }
+}
+
+/// Speed to goals.
+const TRAVEL_SPEED: Number = number("m/s").above(0.0).up_to(100.0);
+/// Acceleration to goals.
+const TRAVEL_ACCELERATION: Number = number("m/s²").above(0.0).up_to(100.0);
+/// How far to stay off things.
+const CLEARANCE: Number = number("m").from(0.0).up_to(100.0);
+/// Most goals of a tour.
+const MOST_GOALS: usize = 100;
+
+/// [x, y], or [x, y, heading].
+struct GoalForm;
+
+impl Form for GoalForm {
+    type Out = Goal;
+
+    fn read(&self, node: &Node, reporter: &mut Reporter) -> Option<Goal> {
+        if node.as_list().is_some_and(|items| items.len() == 2) {
+            let position = Couple(number("m"), number("m")).read(node, reporter)?;
+            return Some(Goal { position, heading: None });
+        }
+        let [x, y, heading] = POSE.read(node, reporter)?;
+        Some(Goal { position: [x, y], heading: Some(wrap(heading)) })
+    }
+
+    fn schema(&self) -> Json {
+        json!({ "anyOf": [Couple(number("m"), number("m")).schema(), POSE.schema()] })
     }
 }
 
@@ -222,6 +285,19 @@ fn from_table(keys: TableKeys, node: &Node, reporter: &mut Reporter) -> Option<P
     Some(Path::Table { rows: rows.value })
 }
 
+fn goal(keys: GoalKeys, _: &Node, _: &mut Reporter) -> Option<Path> {
+    let (speed, acceleration) = (keys.speed?.value, keys.acceleration?.value);
+    let travel = Travel { speed, acceleration, clearance: keys.clearance?.value };
+    Some(Path::Goal { pose: keys.pose?.value, travel })
+}
+
+fn tour(keys: TourKeys, _: &Node, _: &mut Reporter) -> Option<Path> {
+    let (speed, acceleration) = (keys.speed?.value, keys.acceleration?.value);
+    let travel = Travel { speed, acceleration, clearance: keys.clearance?.value };
+    let (goals, pause) = (keys.goals?.value, keys.pause?.value);
+    Some(Path::Tour { goals, pause, rounds: keys.rounds?.value, travel })
+}
+
 /// A lead robot's path.
 pub(crate) const PATH: Kinds<Path> = Kinds {
     key: "kind",
@@ -233,5 +309,7 @@ pub(crate) const PATH: Kinds<Path> = Kinds {
         &Kind { word: "figure-eight", make: figure_eight },
         &Kind { word: "waypoints", make: waypoints },
         &Kind { word: "table", make: from_table },
+        &Kind { word: "goal", make: goal },
+        &Kind { word: "tour", make: tour },
     ],
 };

@@ -67,6 +67,10 @@ impl PropStage<'_> {
                 return None;
             }
             (Some(mass), None) => PropMotion::Loose { mass: mass.value },
+            (None, Some(path)) if path.is_planned() => {
+                reporter.report(span, "goals are for robots that lead: a prop goes along a path as it is");
+                return None;
+            }
             (None, Some(path)) => PropMotion::Guided { path: path.clone() },
             (None, None) => PropMotion::Fixed,
         };

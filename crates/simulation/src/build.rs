@@ -5,6 +5,7 @@ use crate::error::{BuildError, EPSILON_MIN};
 use crate::events::event_plan;
 use crate::filing::edge_laws;
 use crate::parameters::{ParameterSet, ScheduledChange};
+use crate::planned::planned;
 use crate::safety::SafetyConfig;
 use crate::setup::Setup;
 use crate::stage::{handling, stage};
@@ -39,13 +40,14 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         scene.edges().map(|(name, follow, _)| (name, follow)).chain(later).collect();
     check_continuous(scene, &followers)?;
 
-    let mut stage = stage(scene)?;
+    let laws = edge_laws(scene);
+    let planned = planned(scene, &graph, &laws)?;
+    let mut stage = stage(scene, &planned)?;
     let leading = stage.actors.iter().enumerate();
     let leads = leading.filter_map(|(index, actor)| Some((index, actor.robot.lead.clone()?))).collect();
     let limits = stage.actors.iter().map(|actor| actor.robot.limits).collect();
     let chased = chased(scene, &mut stage);
     let edges = graph.edges().to_vec();
-    let laws = edge_laws(scene);
     let changes = scene.changes.iter().map(turn).collect::<Result<_, _>>()?;
     let member = |robot: &scene::Robot| RobotInfo {
         name: robot.name.clone(),

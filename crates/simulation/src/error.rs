@@ -27,6 +27,14 @@ pub enum BuildError {
         /// What is asked for, and where.
         found: Box<Undrivable>,
     },
+    /// There is no way to a goal.
+    #[error("the path of `{robot}`: {why}")]
+    Plan {
+        /// The lead robot.
+        robot: String,
+        /// Why.
+        why: String,
+    },
     /// A path's heading in continuous time.
     #[error(
         "the law of `{robot}` holds its bearing against the heading of a path, which is filtered from sample to sample: \

@@ -16,6 +16,7 @@ mod filing;
 mod gates;
 mod in_line;
 mod parameters;
+mod planned;
 mod plant;
 mod record;
 mod safety;
@@ -35,6 +36,7 @@ pub use events::{EventAction, EventPlan, HandOverRules, Holds, PlannedEvent, Rec
 pub use fault::{Fault, NotFinite};
 pub use gates::{Gate, gates, narrowest};
 pub use in_line::in_line;
+pub use planned::PlannedMotion;
 pub use parameters::{ParameterSet, ScheduledChange};
 pub use safety::SafetyConfig;
 pub use setup::Setup;

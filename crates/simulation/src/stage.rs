@@ -2,20 +2,25 @@
 
 use crate::drivable::{PathMotion, Undrivable, undrivable};
 use crate::error::BuildError;
+use crate::planned::PlannedMotion;
 use formation::lead::{
     AnalyticTrajectory, Hermite, SpeedSchedule, SplinePath, SplinePathError, TabulatedTrajectory,
 };
 use scene::{Compensation, Path, PropMotion, Role, Scene, SpeedProfile, VehicleKind};
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use vocabulary::{Limits, Mobility, Placement, Pose, Prop, ScalarTrajectory, Trajectory};
 use world::wheeled::tyre::Tyre;
 use world::{Drivetrain, Handling, PropBody, RobotSetup, Unicycle, Wheeled, WorldSetup};
 
 /// All that is on stage.
-pub(crate) fn stage(scene: &Scene) -> Result<WorldSetup, BuildError> {
+pub(crate) fn stage(
+    scene: &Scene,
+    planned: &BTreeMap<usize, Arc<PlannedMotion>>,
+) -> Result<WorldSetup, BuildError> {
     let mut actors = Vec::with_capacity(scene.robots.len());
     for index in 0..scene.robots.len() {
-        actors.push(actor(scene, index)?);
+        actors.push(actor(scene, index, planned.get(&index))?);
     }
     Ok(WorldSetup {
         actors,
@@ -25,13 +30,20 @@ pub(crate) fn stage(scene: &Scene) -> Result<WorldSetup, BuildError> {
     })
 }
 
-fn actor(scene: &Scene, index: usize) -> Result<RobotSetup, BuildError> {
+fn actor(
+    scene: &Scene,
+    index: usize,
+    planned: Option<&Arc<PlannedMotion>>,
+) -> Result<RobotSetup, BuildError> {
     let robot = &scene.robots[index];
     let (mut pose, mut speed, mut lead) = (robot.pose, 0.0, None);
     match &robot.role {
         Role::Lead { path } => {
-            let (motion, start) = course(path)
-                .map_err(|source| BuildError::SplinePath { robot: robot.name.clone(), source })?;
+            let (motion, start) = match planned {
+                Some(motion) => (PathMotion::Free(motion.clone()), None),
+                None => course(path)
+                    .map_err(|source| BuildError::SplinePath { robot: robot.name.clone(), source })?,
+            };
             check_drivable(scene, index, &motion)?;
             pose = start.unwrap_or(pose);
             lead = Some(motion.trajectory());
@@ -182,6 +194,8 @@ pub(crate) fn course(path: &Path) -> Result<(PathMotion, Option<Pose>), SplinePa
             || Arc::new(AnalyticTrajectory::constant(0.0, 0.0)) as Arc<dyn Trajectory>,
             |t| Arc::new(t),
         ),
+        // Ways to goals are planned before; whoever has none stays.
+        Path::Goal { .. } | Path::Tour { .. } => Arc::new(AnalyticTrajectory::constant(0.0, 0.0)),
     };
     Ok((PathMotion::Free(trajectory), None))
 }

@@ -30,7 +30,7 @@ pub use ground::{Ground, Noise, Patch, Relief};
 pub use law::{Law, Observer, SwitchingKind};
 pub use leader::{Leader, Leaders};
 pub use narrowing::Narrowing;
-pub use path::{Path, SpeedProfile};
+pub use path::{Goal, Path, SpeedProfile, Travel};
 pub use prop::{PropMotion, PropSpec};
 pub use robot::{Follow, Robot, Role};
 pub use run::{OnContact, Physics, Time};

@@ -59,6 +59,56 @@ pub enum Path {
         /// Rows of [time in s, speed in m/s, turn rate in rad/s], time rising from 0.
         rows: Vec<[f64; 3]>,
     },
+    /// To a goal, where it stays: the way is planned for the whole formation.
+    Goal {
+        /// Where to.
+        pose: Goal,
+        /// How to go there.
+        #[serde(flatten)]
+        travel: Travel,
+    },
+    /// To one goal after the other, planned alike.
+    Tour {
+        /// Where to, one after the other; at least one.
+        goals: Vec<Goal>,
+        /// How long it stays at each, s.
+        pause: f64,
+        /// How often it goes through all of them.
+        rounds: u32,
+        /// How to go there.
+        #[serde(flatten)]
+        travel: Travel,
+    },
+}
+
+/// A place to reach at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// World coordinates [x, y], m.
+    pub position: [f64; 2],
+    /// rad; `None` for any.
+    pub heading: Option<f64>,
+}
+
+impl Serialize for Goal {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let [x, y] = self.position;
+        match self.heading {
+            Some(heading) => [x, y, heading].serialize(serializer),
+            None => [x, y].serialize(serializer),
+        }
+    }
+}
+
+/// How a formation goes to its goals.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Travel {
+    /// Speed of the lead where nothing slows it, m/s.
+    pub speed: f64,
+    /// How it gains speed and brakes, m/s².
+    pub acceleration: f64,
+    /// How far all robots stay off what is known to stand there, m.
+    pub clearance: f64,
 }
 
 /// Speed along a curve.
@@ -101,6 +151,12 @@ impl Path {
                 largest(&mut rows.iter().map(|row| row[1])),
                 Some(largest(&mut rows.iter().map(|row| row[2]))),
             ),
+            Self::Goal { travel, .. } | Self::Tour { travel, .. } => (travel.speed, None),
         }
+    }
+
+    /// Whether the way has to be planned first.
+    pub fn is_planned(&self) -> bool {
+        matches!(self, Self::Goal { .. } | Self::Tour { .. })
     }
 }
