@@ -73,6 +73,10 @@ struct SearchNode {
 }
 
 const NOBODY: u32 = u32::MAX;
+/// Where the start is in its cell, as a share: straight ways of whole steps must not run along the edges of cells.
+const CELL_OFFSET: f64 = 0.4567;
+/// The estimate takes the column to be wider by this, for its bends.
+const RESERVE: f64 = 1.5;
 /// What has no way after half of the effort is searched with a weight larger by this.
 const GREEDY: f64 = 2.5;
 /// Nodes at most: they are numbered by 32 bits, and take memory.
@@ -109,6 +113,11 @@ impl Hasher for CellHasher {
 }
 
 type Cells = HashSet<u64, BuildHasherDefault<CellHasher>>;
+
+/// A cost in whole parts of a metre, to compare.
+fn grains(cost: f64) -> u64 {
+    (cost * GRAINS).round() as u64
+}
 
 /// Looks for a way; `stop` is asked now and then, with the number of steps swept.
 pub(crate) fn search(
@@ -188,7 +197,7 @@ impl<'a> Lattice<'a> {
             goal: goal.pose(start.pose.heading),
             with_heading: goal.heading.is_some(),
             need: model.body(0).core() + map.clearance(),
-            column: model.body(0).core() + map.clearance() + trailing.column_half_width(),
+            column: model.body(0).core() + map.clearance() + RESERVE * trailing.column_half_width(),
             radius: 1.0 / most,
             reverses: limits.reverses,
         };
@@ -220,7 +229,7 @@ impl<'a> Lattice<'a> {
         self.plant(weight);
         let mut after = 0;
         while let Some(Reverse([estimate, last])) = self.open.pop() {
-            if outcome.way.as_ref().is_some_and(|way| estimate as f64 >= way.cost * GRAINS) {
+            if outcome.way.as_ref().is_some_and(|way| estimate >= grains(way.cost)) {
                 return Ended::Found;
             }
             let index = (u64::from(NOBODY) - last) as usize;
@@ -245,7 +254,7 @@ impl<'a> Lattice<'a> {
             }
             self.closed.insert(key);
             if let Some(way) = self.ends(index, outcome.expansions) {
-                let is_better = outcome.way.as_ref().is_none_or(|best| way.cost < best.cost);
+                let is_better = outcome.way.as_ref().is_none_or(|best| grains(way.cost) < grains(best.cost));
                 if is_better {
                     outcome.way = Some(way);
                 }
@@ -295,7 +304,7 @@ impl<'a> Lattice<'a> {
             let estimate = node.cost + weight * left;
             self.nodes.push(node);
             // Of equal estimates the youngest comes first.
-            self.open.push(Reverse([(estimate * GRAINS).round() as u64, u64::from(NOBODY) - index]));
+            self.open.push(Reverse([grains(estimate), u64::from(NOBODY) - index]));
         }
     }
 
@@ -303,7 +312,8 @@ impl<'a> Lattice<'a> {
     fn key(&self, index: usize) -> u64 {
         let node = &self.nodes[index];
         let effort = self.request.effort;
-        let cell = self.frame.inside([node.pose.x, node.pose.y]).map(|x| (x / effort.cell + 0.5).floor());
+        let cell =
+            self.frame.inside([node.pose.x, node.pose.y]).map(|x| (x / effort.cell + CELL_OFFSET).floor());
         let turn = self.frame.turn(node.pose.heading).rem_euclid(TAU) / TAU;
         let heading = ((turn * effort.headings as f64 + 0.5) as u64) % effort.headings as u64;
         let place = (cell[1] + 0.5 * self.columns) * self.columns + cell[0] + 0.5 * self.columns;
@@ -440,7 +450,7 @@ impl<'a> Lattice<'a> {
         let clear: Vec<_> = shots.into_iter().filter(|legs| self.is_clear(&node, legs)).collect();
         let ways = clear.into_iter().map(|legs| way(self.legs(index, legs)));
         ways.chain(found).fold(None, |best: Option<FoundWay>, way| match best {
-            Some(best) if best.cost <= way.cost => Some(best),
+            Some(best) if grains(best.cost) <= grains(way.cost) => Some(best),
             _ => Some(way),
         })
     }
