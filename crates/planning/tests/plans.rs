@@ -484,7 +484,7 @@ fn in_a_dead_end_a_smaller_formation_is_offered() {
         matches!(found.reason, NoWayReason::StartBlocked { robot: 5 | 6, by: Boundary::Ground(_) }),
         "{found}"
     );
-    assert!(found.to_string().ends_with("; one for a column of 5"), "{found}");
+    assert_eq!(found.to_string(), "robot 5 starts too near to side 3 of the ground; one for a column of 5");
     let offer = found.offer.expect("an offer");
     let request = PlanRequest::new(&map, &offer.model, limits, offer.mission);
     let taken = plan(&request, &mut |_| false).expect("what is offered is there");
@@ -505,6 +505,11 @@ fn where_the_shape_has_no_room_the_column_is_offered_with_the_gap() {
     let found = no_way(plan(&request, &mut |_| false));
     assert!(matches!(found.reason, NoWayReason::TooWide { robots: 7, .. }), "{found}");
     assert_eq!(found.offer.as_ref().map(|offer| offer.robots), Some(7), "{found}");
+    assert_eq!(
+        found.to_string(),
+        "no way for 7 robots was found: the search used up its effort; the gap of 2.80 m between obstacle 0 and obstacle 1 at \
+         (19.5, 20.0); one for a column of 7"
+    );
     let gap = found.gap.expect("a gap");
     assert!((gap.width - 2.8).abs() < 1e-9, "{gap:?}");
     // A search takes some 5 µs for each step that it sweeps: two seconds are far away.
