@@ -71,8 +71,7 @@ pub fn plan_tour(
         let request = PlanRequest { mission: Mission { start, goal: *to }, held, ..*request };
         let found = plan(&request, stop).map_err(|error| TourError { goal, error })?;
         if let Some(end) = found.points.last() {
-            let level = end.level.round() as usize;
-            start = PlanStart { level, curvature: end.curvature, ..PlanStart::at(end.pose) };
+            start = PlanStart { level: end.level, curvature: end.curvature, ..PlanStart::at(end.pose) };
         }
         plans.push(found);
     }
@@ -100,7 +99,7 @@ fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayRe
         return Some(NoWayReason::GoalOutside);
     }
     let mut sweep = Sweep::new(map, trailing, limits);
-    let convoy = trailing.begin(request, start.level as f64);
+    let convoy = trailing.begin(request, start.level);
     if let Err(Blocked::Touches { robot, .. }) = sweep.begin(&convoy) {
         let (_, by) = map.nearest(convoy.positions[robot]);
         return Some(NoWayReason::StartBlocked { robot, by });
@@ -112,7 +111,7 @@ fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayRe
 /// Smooths part by part: each ends where it ended, so that the next one stays as it is.
 fn smooth(request: &PlanRequest<'_>, trailing: &Trailing, legs: &[Leg]) -> (Vec<Leg>, bool) {
     let mut sweep = Sweep::new(request.map, trailing, &request.limits);
-    let mut convoy = trailing.begin(request, request.mission.start.level as f64);
+    let mut convoy = trailing.begin(request, request.mission.start.level);
     let mut left: Vec<Leg> = legs.iter().rev().cloned().collect();
     let (mut done, mut changed) = (vec![], false);
     while let Some(leg) = left.pop() {
