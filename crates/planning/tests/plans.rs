@@ -642,7 +642,7 @@ fn nothing_that_is_asked_brings_the_planner_down() {
             reverses: k % 4 == 0,
         };
         let pose = Pose::new(draw(8.0), draw(8.0), draw(0.8));
-        let start = PlanStart { pose, level: draw((k % 5) as f64), curvature: draw(0.0), speed: draw(0.0) };
+        let start = PlanStart { pose, level: draw(f64::from(k % 5)), curvature: draw(0.0), speed: draw(0.0) };
         let mut goal = PlanGoal::at(Pose::new(draw(20.0), draw(20.0), draw(1.0)));
         (goal.tolerance, goal.heading_tolerance) = (draw(0.1), draw(0.1));
         let who = if k % 2 == 0 { &alone } else { &model };
