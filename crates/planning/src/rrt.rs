@@ -87,7 +87,7 @@ pub fn rrt_star(request: &PlanRequest<'_>, effort: &RrtEffort) -> Option<MotionP
     let mut draws = Draws::new(effort.seed);
     let mut best: Option<usize> = None;
     for sample in 0..effort.samples {
-        let at_goal = sample % effort.goal_every == effort.goal_every - 1;
+        let at_goal = (sample + 1).is_multiple_of(effort.goal_every);
         let (pose, level) = tree.draw(&mut draws, at_goal);
         let Some(added) = tree.extend(pose, level, effort, at_goal) else { continue };
         let is_best = best.is_none_or(|best| tree.nodes[added].cost < tree.nodes[best].cost);
