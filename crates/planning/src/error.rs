@@ -60,10 +60,8 @@ pub enum InputError {
         expected: usize,
     },
     /// A level that is not there.
-    #[error("{what} asks for level {level}, but the formation has levels 0 to {last}")]
+    #[error("the goal asks for level {level}, but the formation has levels 0 to {last}")]
     NoSuchLevel {
-        /// Who asks.
-        what: &'static str,
         /// For which.
         level: usize,
         /// The last one.

@@ -192,10 +192,11 @@ impl FormationModel {
         self.steady(level, 0.0).iter().map(|robot| [robot.pose.x, robot.pose.y]).collect()
     }
 
-    /// The formation at some of its levels only.
+    /// The formation at some of its levels only: at one at least.
     #[must_use]
     pub fn with_levels(&self, levels: std::ops::Range<usize>) -> Self {
-        let levels = levels.start.min(self.levels - 1)..levels.end.clamp(1, self.levels);
+        let first = levels.start.min(self.levels - 1);
+        let levels = first..levels.end.clamp(first + 1, self.levels);
         let keep = |follower: &FollowerModel| FollowerModel {
             places: follower.places[levels.clone()].to_vec(),
             ..follower.clone()
@@ -263,5 +264,59 @@ impl FormationModel {
         let tried = (1..=CURVATURES).map(|k| most * k as f64 / CURVATURES as f64);
         // To the left and to the right alike: a formation with one wing only has its smaller one.
         tried.take_while(|curvature| holds(*curvature) && holds(-*curvature)).last().unwrap_or(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial;
+
+    /// On a circle a follower is τ κ behind, and as fast as it is far from the middle.
+    #[test]
+    fn on_a_circle_everybody_is_on_a_circle() {
+        let (model, curvature) = (trial::vee(), 0.12);
+        let robots = model.steady(0, curvature);
+        let [left, right] = [robots[1], robots[2]];
+        let place = Pose::new(0.0, 0.0, -curvature).world_from_body(-2.0_f64.sqrt(), 2.0_f64.sqrt());
+        assert!(math::hypot(left.pose.x - place[0], left.pose.y - place[1]) < 1e-12);
+        assert!(left.ratio < 1.0 && right.ratio > 1.0);
+        for robot in robots {
+            let from_middle = math::hypot(robot.pose.x, robot.pose.y - 1.0 / curvature);
+            assert!((robot.ratio - curvature * from_middle).abs() < 1e-12);
+        }
+    }
+
+    /// The column follows the lead's track: it may turn as sharply as the lead. The V has an outermost robot.
+    #[test]
+    fn narrow_shapes_turn_more_sharply_than_wide_ones() {
+        let (model, limits) = (trial::vee(), TravelLimits::default());
+        let largest: Vec<f64> = (0..5).map(|level| model.largest_curvature(level, &limits)).collect();
+        assert!(largest.windows(2).all(|pair| pair[0] < pair[1]), "{largest:?}");
+        // A little more, and a robot of the V is too fast, or nearly stands.
+        let holds = |curvature: f64| {
+            let robots = model.steady(0, curvature);
+            robots.iter().all(|robot| robot.ratio <= 2.0 && robot.forward >= SLOWEST_SHARE)
+        };
+        assert!(holds(largest[0]) && !holds(largest[0] + limits.curvature / CURVATURES as f64));
+    }
+
+    #[test]
+    fn whoever_is_last_in_the_column_is_left_out_first() {
+        let mut model = trial::vee();
+        let mut left = vec![];
+        while let Some(smaller) = model.without_last() {
+            left.push(smaller.robots());
+            model = smaller;
+        }
+        assert_eq!(left, [6, 5, 4, 3, 2, 1]);
+        assert_eq!(trial::vee().last(), Some(6));
+        assert_eq!(trial::vee().with_levels(9..12).levels(), 1);
+        let line = FollowerModel::narrowing(1, [[-1.0, 0.0]; 2], 1, BodyShape::Disc { radius: 0.2 });
+        let error = FormationModel::new(BodyShape::Disc { radius: 0.2 }, vec![line]).expect_err("refused");
+        assert_eq!(
+            error.to_string(),
+            "follower 1 follows robot 1: list leaders before their followers; robot 0 is the lead"
+        );
     }
 }

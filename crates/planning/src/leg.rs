@@ -136,6 +136,18 @@ impl Leg {
         self.pieces(PRECISE).last().map_or(self.start, |piece| piece.end)
     }
 
+    /// The leg in two parts, at the knot nearest to its middle; `None` where all knots are ends.
+    pub(crate) fn halves(&self) -> Option<[Self; 2]> {
+        let off = |k: &usize| (self.knots[*k].way - 0.5 * self.length()).abs();
+        let at = (1..self.knots.len().checked_sub(1)?).min_by(|a, b| off(a).total_cmp(&off(b)))?;
+        let first = Self { knots: self.knots[..=at].to_vec(), ..self.clone() };
+        let begins = self.knots[at].way;
+        let knots =
+            self.knots[at..].iter().map(|knot| CurvatureKnot { way: knot.way - begins, ..*knot }).collect();
+        let second = Self { start: first.end(), knots, ..self.clone() };
+        Some([first, second])
+    }
+
     /// The same leg with knots at most `step` m apart, but where the level changes.
     pub(crate) fn refined(&self, step: f64) -> Self {
         let mut knots = self.knots[..1].to_vec();

@@ -11,8 +11,8 @@ use vocabulary::Pose;
 pub struct PlanStart {
     /// Of the lead.
     pub pose: Pose,
-    /// Of the formation.
-    pub level: usize,
+    /// Of the formation; between two levels where it is on its way from one to the other.
+    pub level: f64,
     /// Curvature that the lead drives, 1/m: followers are taken to hold their places on that circle.
     pub curvature: f64,
     /// Speed of the lead, m/s.
@@ -124,7 +124,7 @@ impl<'a> PlanRequest<'a> {
 impl PlanStart {
     /// At rest, at level 0.
     pub const fn at(pose: Pose) -> Self {
-        Self { pose, level: 0, curvature: 0.0, speed: 0.0 }
+        Self { pose, level: 0.0, curvature: 0.0, speed: 0.0 }
     }
 }
 
@@ -205,13 +205,13 @@ impl Mission {
         for (what, value) in both {
             checked(value, value > 0.0, || what.into(), "positive")?;
         }
-        let levels = [("the start", Some(start.level)), ("the goal", goal.level)];
-        for (what, level) in levels {
-            if let Some(level) = level.filter(|level| *level >= model.levels()) {
-                return Err(InputError::NoSuchLevel { what, level, last: model.levels() - 1 });
-            }
+        let last = model.levels() - 1;
+        let fits = (0.0..=last as f64).contains(&start.level);
+        checked(start.level, fits, || "the start's level".into(), "from 0 to the last level")?;
+        match goal.level.filter(|level| *level > last) {
+            Some(level) => Err(InputError::NoSuchLevel { level, last }),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 

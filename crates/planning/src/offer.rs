@@ -179,13 +179,13 @@ fn offer(request: &PlanRequest<'_>, found: &mut NoWay, stop: &mut dyn FnMut(usiz
         models.push(smaller);
     }
     let mut mission = request.mission;
-    mission.start.level = request.model.levels() - 1;
+    mission.start.level = (request.model.levels() - 1) as f64;
     mission.goal.level = None;
     let is_asked = mission == request.mission;
     let mut tried = |model: &FormationModel| {
         let mission = Mission {
             start: crate::mission::PlanStart {
-                level: mission.start.level.min(model.levels() - 1),
+                level: mission.start.level.min((model.levels() - 1) as f64),
                 ..mission.start
             },
             ..mission
@@ -215,13 +215,13 @@ fn blocking_gap(request: &PlanRequest<'_>, offer: &Offer) -> Option<Gap> {
     let model = request.model;
     let trailing = Trailing::new(model, &request.limits);
     let mut sweep = Sweep::new(request.map, &trailing, &request.limits);
-    let levels = [model.levels() - 1, request.mission.start.level];
+    let levels = [(model.levels() - 1) as f64, request.mission.start.level];
     levels.iter().find_map(|level| {
-        let mut convoy = trailing.begin(request, *level as f64);
+        let mut convoy = trailing.begin(request, *level);
         sweep.resume();
         for leg in &offer.legs {
             for mut piece in leg.pieces(STEP) {
-                piece.level = *level as f64;
+                piece.level = *level;
                 if let Err(Blocked::Touches { robot, .. }) = sweep.piece(&mut convoy, &piece) {
                     return Gap::at(request.map, beside(&offer.legs, convoy.positions[robot]));
                 }

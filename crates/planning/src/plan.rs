@@ -128,7 +128,7 @@ impl MotionPlan {
     pub(crate) fn along(request: &PlanRequest<'_>, trailing: &Trailing, legs: Vec<Leg>) -> Self {
         let mut points = vec![];
         let start = request.mission.start;
-        let mut convoy = trailing.begin(request, start.level as f64);
+        let mut convoy = trailing.begin(request, start.level);
         let mut speed = start.speed;
         for leg in &legs {
             let mut course = Course::new(trailing, leg, &mut convoy);

@@ -5,9 +5,9 @@ use crate::leg::Leg;
 use crate::mission::{Mission, PlanGoal, PlanRequest, PlanStart};
 use crate::offer::{NoWay, NoWayReason, blocked_by, why_not, with_offer};
 use crate::plan::MotionPlan;
-use crate::search::search;
+use crate::search::{join, search};
 use crate::smooth::smoothed;
-use crate::trailing::{Blocked, Sweep, Trailing};
+use crate::trailing::{Blocked, Convoy, STEP, Sweep, Trailing};
 use thiserror::Error;
 
 /// Why there is no plan.
@@ -71,8 +71,7 @@ pub fn plan_tour(
         let request = PlanRequest { mission: Mission { start, goal: *to }, held, ..*request };
         let found = plan(&request, stop).map_err(|error| TourError { goal, error })?;
         if let Some(end) = found.points.last() {
-            let level = end.level.round() as usize;
-            start = PlanStart { level, curvature: end.curvature, ..PlanStart::at(end.pose) };
+            start = PlanStart { level: end.level, curvature: end.curvature, ..PlanStart::at(end.pose) };
         }
         plans.push(found);
     }
@@ -100,7 +99,7 @@ fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayRe
         return Some(NoWayReason::GoalOutside);
     }
     let mut sweep = Sweep::new(map, trailing, limits);
-    let convoy = trailing.begin(request, start.level as f64);
+    let convoy = trailing.begin(request, start.level);
     if let Err(Blocked::Touches { robot, .. }) = sweep.begin(&convoy) {
         let (_, by) = map.nearest(convoy.positions[robot]);
         return Some(NoWayReason::StartBlocked { robot, by });
@@ -109,22 +108,51 @@ fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayRe
     blocked_by(map, goal.position, need).map(|by| NoWayReason::GoalBlocked { by })
 }
 
-/// Smooths leg by leg: each ends where it ended, so that the next one stays as it is.
+/// Smooths part by part: each ends where it ended, so that the next one stays as it is.
 fn smooth(request: &PlanRequest<'_>, trailing: &Trailing, legs: &[Leg]) -> (Vec<Leg>, bool) {
     let mut sweep = Sweep::new(request.map, trailing, &request.limits);
-    let mut convoy = trailing.begin(request, request.mission.start.level as f64);
-    let mut changed = false;
-    let smooth = legs.iter().map(|leg| {
-        let found = smoothed(request, &mut sweep, &convoy, leg);
+    let mut convoy = trailing.begin(request, request.mission.start.level);
+    let mut left: Vec<Leg> = legs.iter().rev().cloned().collect();
+    let (mut done, mut changed) = (vec![], false);
+    while let Some(leg) = left.pop() {
+        let is_short = leg.length() <= LONGEST_PART;
+        let found = if is_short { smoothed(request, &mut sweep, &convoy, &leg) } else { None };
+        let found = found.filter(|found| rest_is_clear(trailing, &mut sweep, &convoy, found, &left));
         changed |= found.is_some();
-        let leg = found.unwrap_or_else(|| leg.clone());
-        for piece in leg.pieces(crate::trailing::STEP) {
-            for robot in 0..trailing.robots() {
-                trailing.step(&mut convoy, robot, &piece);
-            }
+        let halves = if found.is_none() && leg.length() > SHORTEST_PART { leg.halves() } else { None };
+        if let Some([first, second]) = halves {
+            left.extend([second, first]);
+            continue;
         }
-        leg
-    });
-    let legs = smooth.collect();
-    (legs, changed)
+        let leg = found.unwrap_or(leg);
+        drive(trailing, &mut convoy, &leg);
+        join(&mut done, leg);
+    }
+    (done, changed)
+}
+
+/// Parts that are longer, m, are smoothed in halves; so are those of which nothing came, if they are longer than the second.
+const LONGEST_PART: f64 = 60.0;
+const SHORTEST_PART: f64 = 12.0;
+
+/// Whether followers whose headings remember another way stay clear on all that is left.
+fn rest_is_clear(
+    trailing: &Trailing,
+    sweep: &mut Sweep<'_>,
+    convoy: &Convoy,
+    leg: &Leg,
+    left: &[Leg],
+) -> bool {
+    let mut convoy = convoy.clone();
+    drive(trailing, &mut convoy, leg);
+    sweep.resume();
+    left.iter().rev().all(|leg| sweep.leg(&mut convoy, leg).is_ok())
+}
+
+fn drive(trailing: &Trailing, convoy: &mut Convoy, leg: &Leg) {
+    for piece in leg.pieces(STEP) {
+        for robot in 0..trailing.robots() {
+            trailing.step(convoy, robot, &piece);
+        }
+    }
 }

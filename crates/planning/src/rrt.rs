@@ -72,11 +72,11 @@ pub fn rrt_star(request: &PlanRequest<'_>, effort: &RrtEffort) -> Option<MotionP
         largest: primitives.largest,
         nodes: vec![],
     };
-    let convoy = trailing.steady(start.pose, 0.0, start.level as f64);
+    let convoy = trailing.steady(start.pose, 0.0, start.level.round());
     tree.sweep.begin(&convoy).ok()?;
     let root = TreeNode {
         pose: start.pose,
-        level: start.level,
+        level: start.level.round() as usize,
         cost: 0.0,
         parent: 0,
         children: 0,
@@ -87,7 +87,7 @@ pub fn rrt_star(request: &PlanRequest<'_>, effort: &RrtEffort) -> Option<MotionP
     let mut draws = Draws::new(effort.seed);
     let mut best: Option<usize> = None;
     for sample in 0..effort.samples {
-        let at_goal = sample % effort.goal_every == effort.goal_every - 1;
+        let at_goal = (sample + 1).is_multiple_of(effort.goal_every);
         let (pose, level) = tree.draw(&mut draws, at_goal);
         let Some(added) = tree.extend(pose, level, effort, at_goal) else { continue };
         let is_best = best.is_none_or(|best| tree.nodes[added].cost < tree.nodes[best].cost);
@@ -156,7 +156,8 @@ impl RandomTree<'_> {
         let curvature = self.largest[low..=high].iter().copied().fold(f64::INFINITY, f64::min);
         let turning = Turning { curvature, sharpness: self.request.limits.sharpness };
         let list = shot(ShotStart { pose: from.pose, curvature: 0.0 }, pose, turning)?;
-        let lists = with_levels(&list, [from.level, level], self.request.effort.step);
+        let lists =
+            with_levels(&list, [from.level, level].map(|level| level as f64), self.request.effort.step);
         let legs = lists.into_iter().map(|KnotList(knots)| Leg { start: from.pose, backwards: false, knots });
         let cost =
             |leg: &Leg| cost_of(std::slice::from_ref(leg), self.trailing.levels(), &self.request.costs);

@@ -73,6 +73,10 @@ struct SearchNode {
 }
 
 const NOBODY: u32 = u32::MAX;
+/// Where the start is in its cell, as a share: straight ways of whole steps must not run along the edges of cells.
+const CELL_OFFSET: f64 = 0.4567;
+/// The estimate takes the column to be wider by this, for its bends.
+const RESERVE: f64 = 1.5;
 /// What has no way after half of the effort is searched with a weight larger by this.
 const GREEDY: f64 = 2.5;
 /// Nodes at most: they are numbered by 32 bits, and take memory.
@@ -109,6 +113,11 @@ impl Hasher for CellHasher {
 }
 
 type Cells = HashSet<u64, BuildHasherDefault<CellHasher>>;
+
+/// A cost in whole parts of a metre, to compare.
+fn grains(cost: f64) -> u64 {
+    (cost * GRAINS).round() as u64
+}
 
 /// Looks for a way; `stop` is asked now and then, with the number of steps swept.
 pub(crate) fn search(
@@ -188,7 +197,7 @@ impl<'a> Lattice<'a> {
             goal: goal.pose(start.pose.heading),
             with_heading: goal.heading.is_some(),
             need: model.body(0).core() + map.clearance(),
-            column: model.body(0).core() + map.clearance() + trailing.column_half_width(),
+            column: model.body(0).core() + map.clearance() + RESERVE * trailing.column_half_width(),
             radius: 1.0 / most,
             reverses: limits.reverses,
         };
@@ -203,7 +212,7 @@ impl<'a> Lattice<'a> {
             memory: vec![],
             open: BinaryHeap::new(),
             closed: Cells::default(),
-            convoy: trailing.begin(request, start.level as f64),
+            convoy: trailing.begin(request, start.level),
             columns: (2.0 * extent / effort.cell).ceil() + 2.0,
         }
     }
@@ -220,7 +229,7 @@ impl<'a> Lattice<'a> {
         self.plant(weight);
         let mut after = 0;
         while let Some(Reverse([estimate, last])) = self.open.pop() {
-            if outcome.way.as_ref().is_some_and(|way| estimate as f64 >= way.cost * GRAINS) {
+            if outcome.way.as_ref().is_some_and(|way| estimate >= grains(way.cost)) {
                 return Ended::Found;
             }
             let index = (u64::from(NOBODY) - last) as usize;
@@ -245,7 +254,7 @@ impl<'a> Lattice<'a> {
             }
             self.closed.insert(key);
             if let Some(way) = self.ends(index, outcome.expansions) {
-                let is_better = outcome.way.as_ref().is_none_or(|best| way.cost < best.cost);
+                let is_better = outcome.way.as_ref().is_none_or(|best| grains(way.cost) < grains(best.cost));
                 if is_better {
                     outcome.way = Some(way);
                 }
@@ -282,7 +291,7 @@ impl<'a> Lattice<'a> {
             memory: NOBODY,
             curvature: self.primitives.number(start.curvature) as u16,
             begins: self.primitives.number(start.curvature) as u16,
-            level: start.level as u16,
+            level: start.level.round() as u16,
             backwards: false,
         };
         self.push(root, weight);
@@ -295,7 +304,7 @@ impl<'a> Lattice<'a> {
             let estimate = node.cost + weight * left;
             self.nodes.push(node);
             // Of equal estimates the youngest comes first.
-            self.open.push(Reverse([(estimate * GRAINS).round() as u64, u64::from(NOBODY) - index]));
+            self.open.push(Reverse([grains(estimate), u64::from(NOBODY) - index]));
         }
     }
 
@@ -303,7 +312,8 @@ impl<'a> Lattice<'a> {
     fn key(&self, index: usize) -> u64 {
         let node = &self.nodes[index];
         let effort = self.request.effort;
-        let cell = self.frame.inside([node.pose.x, node.pose.y]).map(|x| (x / effort.cell + 0.5).floor());
+        let cell =
+            self.frame.inside([node.pose.x, node.pose.y]).map(|x| (x / effort.cell + CELL_OFFSET).floor());
         let turn = self.frame.turn(node.pose.heading).rem_euclid(TAU) / TAU;
         let heading = ((turn * effort.headings as f64 + 0.5) as u64) % effort.headings as u64;
         let place = (cell[1] + 0.5 * self.columns) * self.columns + cell[0] + 0.5 * self.columns;
@@ -321,14 +331,14 @@ impl<'a> Lattice<'a> {
         let node = self.nodes[index];
         let trailing = self.sweep.trailing();
         if node.parent == NOBODY {
-            self.convoy = trailing.begin(self.request, f64::from(node.level));
+            self.convoy = trailing.begin(self.request, self.level_of(&node));
             if self.sweep.begin(&self.convoy).is_err() {
                 return false;
             }
         } else {
             let parent = self.nodes[node.parent as usize];
             self.recall(&parent);
-            let levels = [parent.level, node.level].map(f64::from);
+            let levels = [&parent, &node].map(|node| self.level_of(node));
             let steps = self.primitives.from(usize::from(node.begins), node.backwards);
             let Some(step) = steps.iter().find(|step| step.to == usize::from(node.curvature)) else {
                 return false;
@@ -345,11 +355,17 @@ impl<'a> Lattice<'a> {
         true
     }
 
+    /// Level at a node: a start may be between two.
+    fn level_of(&self, node: &SearchNode) -> f64 {
+        if node.parent == NOBODY { self.request.mission.start.level } else { f64::from(node.level) }
+    }
+
     fn recall(&mut self, node: &SearchNode) {
         let trailing = self.sweep.trailing();
         let from = node.memory as usize;
         let memory = &self.memory[from..from + trailing.memory_size()];
-        trailing.recall(&mut self.convoy, node.pose, f64::from(node.level), memory);
+        let level = self.level_of(node);
+        trailing.recall(&mut self.convoy, node.pose, level, memory);
     }
 
     /// All steps from a node.
@@ -399,16 +415,16 @@ impl<'a> Lattice<'a> {
     fn push_steps(&mut self, node: &SearchNode, next: &SearchNode, weight: f64, bound: f64) {
         let PlanRequest { model, costs, map, .. } = *self.request;
         let need = model.body(0).core() + map.clearance();
-        let levels = [node.level, next.level];
-        let largest = levels.map(|level| self.primitives.largest[usize::from(level)]);
+        let from_level = self.level_of(node);
+        let largest = [node.level, next.level].map(|level| self.primitives.largest[usize::from(level)]);
         let most = largest[0].min(largest[1]) * (1.0 + 1e-9);
         let from = self.primitives.curvatures[usize::from(next.begins)].abs();
         let per_metre = 1.0
             + if next.backwards { costs.backwards } else { 0.0 }
-            + level_cost(model.levels(), &costs) * 0.5 * f64::from(levels[0] + levels[1]);
+            + level_cost(model.levels(), &costs) * 0.5 * (from_level + f64::from(next.level));
         let cost = next.cost
             + self.primitives.step * per_metre
-            + costs.change * f64::from(levels[0].abs_diff(levels[1]));
+            + costs.change * (f64::from(next.level) - from_level).abs();
         for k in 0..self.primitives.from(usize::from(next.begins), next.backwards).len() {
             let step = &self.primitives.from(usize::from(next.begins), next.backwards)[k];
             let to = self.primitives.curvatures[step.to].abs();
@@ -428,7 +444,7 @@ impl<'a> Lattice<'a> {
         let PlanRequest { model, costs, mission, effort, .. } = *self.request;
         let goal = mission.goal;
         let left = apart([node.pose.x, node.pose.y], goal.position);
-        let at_level = goal.level.is_none_or(|level| level == usize::from(node.level));
+        let at_level = goal.level.is_none_or(|level| level as f64 == self.level_of(&node));
         let off = goal.heading.map_or(0.0, |heading| wrap(heading - node.pose.heading).abs());
         let way = |legs: Vec<Leg>| FoundWay { cost: cost_of(&legs, model.levels(), &costs), legs };
         let found = (left <= goal.tolerance && at_level && off <= goal.heading_tolerance)
@@ -440,7 +456,7 @@ impl<'a> Lattice<'a> {
         let clear: Vec<_> = shots.into_iter().filter(|legs| self.is_clear(&node, legs)).collect();
         let ways = clear.into_iter().map(|legs| way(self.legs(index, legs)));
         ways.chain(found).fold(None, |best: Option<FoundWay>, way| match best {
-            Some(best) if best.cost <= way.cost => Some(best),
+            Some(best) if grains(best.cost) <= grains(way.cost) => Some(best),
             _ => Some(way),
         })
     }
@@ -471,7 +487,7 @@ impl<'a> Lattice<'a> {
                 continue;
             }
             found.extend(
-                with_levels(&list, [level, to], effort.step)
+                with_levels(&list, [self.level_of(node), to as f64], effort.step)
                     .into_iter()
                     .map(|list| vec![Leg { start: node.pose, backwards: false, knots: list.0 }]),
             );
@@ -518,8 +534,8 @@ impl<'a> Lattice<'a> {
         let mut legs: Vec<Leg> = vec![];
         for pair in chain.windows(2) {
             let [from, to] = [pair[0], pair[1]];
-            let begins = self.knot(to.begins, from.level);
-            let ends = self.knot(to.curvature, to.level);
+            let begins = self.knot(to.begins, self.level_of(&from));
+            let ends = self.knot(to.curvature, self.level_of(&to));
             let goes_on = legs.last().is_some_and(|leg| leg.backwards == to.backwards);
             if !goes_on {
                 legs.push(Leg { start: from.pose, backwards: to.backwards, knots: vec![begins] });
@@ -536,15 +552,15 @@ impl<'a> Lattice<'a> {
             legs.push(Leg {
                 start: chain[0].pose,
                 backwards: false,
-                knots: vec![self.knot(chain[0].curvature, chain[0].level)],
+                knots: vec![self.knot(chain[0].curvature, self.level_of(&chain[0]))],
             });
         }
         legs
     }
 
-    fn knot(&self, curvature: u16, level: u16) -> CurvatureKnot {
+    fn knot(&self, curvature: u16, level: f64) -> CurvatureKnot {
         let curvature = self.primitives.curvatures[usize::from(curvature)];
-        CurvatureKnot { way: 0.0, curvature, level: f64::from(level) }
+        CurvatureKnot { way: 0.0, curvature, level }
     }
 }
 
@@ -565,8 +581,7 @@ pub(crate) fn join(legs: &mut Vec<Leg>, leg: Leg) {
 }
 
 /// A course with the level going from one to another as early as it can, and as late.
-pub(crate) fn with_levels(list: &KnotList, levels: [usize; 2], step: f64) -> Vec<KnotList> {
-    let [from, to] = levels.map(|level| level as f64);
+pub(crate) fn with_levels(list: &KnotList, [from, to]: [f64; 2], step: f64) -> Vec<KnotList> {
     let ramp = (to - from).abs() * step;
     let length = list.length();
     if ramp > length {

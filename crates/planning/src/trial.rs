@@ -44,8 +44,9 @@ pub fn map(seed: u64, count: usize) -> Map {
     spread(seed, count, SIDE)
 }
 
-/// The same on a square of `side` m.
+/// The same on a square of `side` m, [`SIDE`] at least.
 pub fn spread(seed: u64, count: usize, side: f64) -> Map {
+    let side = side.max(SIDE);
     let mut draws = Draws::new(seed);
     let mut obstacles = vec![];
     while obstacles.len() < count {

@@ -289,7 +289,7 @@ fn the_same_request_gives_the_same_plan() {
 }
 
 /// Computed on x86-64; every other machine has to find the same.
-const DIGESTS: [&str; 2] = ["dcf88cb7c0d57015", "a87aedb6ba8e7731"];
+const DIGESTS: [&str; 2] = ["85165c1f7ab52e7f", "cfb64fc2cfd80711"];
 
 fn empty(side: f64) -> Map {
     let ground = Convex::rectangle(Pose::new(0.5 * side, 0.5 * side, 0.0), [0.5 * side; 2]).expect("a box");
@@ -475,7 +475,7 @@ fn in_a_dead_end_a_smaller_formation_is_offered() {
     let lane = vec![block([0.0, 20.0], [0.0, 18.6]), block([0.0, 20.0], [21.4, 40.0])];
     let map = with(&empty(40.0), lane);
     let mission = Mission {
-        start: PlanStart { level: 4, ..PlanStart::at(Pose::new(5.0, 20.0, 0.0)) },
+        start: PlanStart { level: 4.0, ..PlanStart::at(Pose::new(5.0, 20.0, 0.0)) },
         goal: PlanGoal::at(Pose::new(32.0, 20.0, 0.0)),
     };
     let (model, limits) = (trial::vee(), TravelLimits::default());
@@ -484,7 +484,7 @@ fn in_a_dead_end_a_smaller_formation_is_offered() {
         matches!(found.reason, NoWayReason::StartBlocked { robot: 5 | 6, by: Boundary::Ground(_) }),
         "{found}"
     );
-    assert!(found.to_string().ends_with("; one for a column of 5"), "{found}");
+    assert_eq!(found.to_string(), "robot 5 starts too near to side 3 of the ground; one for a column of 5");
     let offer = found.offer.expect("an offer");
     let request = PlanRequest::new(&map, &offer.model, limits, offer.mission);
     let taken = plan(&request, &mut |_| false).expect("what is offered is there");
@@ -505,6 +505,11 @@ fn where_the_shape_has_no_room_the_column_is_offered_with_the_gap() {
     let found = no_way(plan(&request, &mut |_| false));
     assert!(matches!(found.reason, NoWayReason::TooWide { robots: 7, .. }), "{found}");
     assert_eq!(found.offer.as_ref().map(|offer| offer.robots), Some(7), "{found}");
+    assert_eq!(
+        found.to_string(),
+        "no way for 7 robots was found: the search used up its effort; the gap of 2.80 m between obstacle 0 and obstacle 1 at \
+         (19.5, 20.0); one for a column of 7"
+    );
     let gap = found.gap.expect("a gap");
     assert!((gap.width - 2.8).abs() < 1e-9, "{gap:?}");
     // A search takes some 5 µs for each step that it sweeps: two seconds are far away.
@@ -528,17 +533,18 @@ fn a_plan_begins_in_the_middle_of_another() {
     });
     let (held, positions, gone) = held.expect("far enough");
     let here = first.at_way(gone).expect("a point");
-    let level = here.level.round() as usize;
-    let start = PlanStart { pose: here.pose, level, curvature: here.curvature, speed: here.speed };
+    let start =
+        PlanStart { pose: here.pose, level: here.level, curvature: here.curvature, speed: here.speed };
     let mission = Mission { start, ..trial::mission() };
     let request = PlanRequest { held: Some(&held), ..PlanRequest::new(&map, &model, limits, mission) };
     let second = plan(&request, &mut |_| false).expect("a plan");
-    assert!(second.brakes_in_time && (second.points[0].speed - here.speed).abs() < 1e-9);
+    let holds = (second.points[0].speed - here.speed).abs() < 1e-9;
+    assert!(second.points[0].speed <= here.speed && holds == second.brakes_in_time);
     assert_eq!(second.points[0].curvature, here.curvature);
-    let level_off = (here.level - level as f64).abs();
+    assert!(here.level > here.level.floor(), "between two levels");
     for (robot, position) in second.points[0].robots.iter().zip(&positions) {
         let off = math::hypot(robot.x - position[0], robot.y - position[1]);
-        assert!(off < 0.02 + 3.0 * level_off, "{off}");
+        assert!(off < 0.02, "{off}");
     }
     within_limits(&second, &limits);
     let few = [[0.0; 2]; 2];
@@ -575,7 +581,7 @@ fn plans_between_random_poses_hold_what_they_promise() {
         let mut pose =
             || Pose::new(draws.between(3.0, 37.0), draws.between(3.0, 37.0), draws.between(-PI, PI));
         let (from, to) = (pose(), pose());
-        let start = PlanStart { level: seed as usize % 5, ..PlanStart::at(from) };
+        let start = PlanStart { level: (seed % 5) as f64, ..PlanStart::at(from) };
         let mut goal = if seed % 3 == 0 { PlanGoal::to([to.x, to.y]) } else { PlanGoal::at(to) };
         goal.level = (seed % 4 == 1).then_some(4 - seed as usize % 5);
         let mission = Mission { start, goal };
@@ -636,7 +642,7 @@ fn nothing_that_is_asked_brings_the_planner_down() {
             reverses: k % 4 == 0,
         };
         let pose = Pose::new(draw(8.0), draw(8.0), draw(0.8));
-        let start = PlanStart { pose, level: k % 6, curvature: draw(0.0), speed: draw(0.0) };
+        let start = PlanStart { pose, level: draw(f64::from(k % 5)), curvature: draw(0.0), speed: draw(0.0) };
         let mut goal = PlanGoal::at(Pose::new(draw(20.0), draw(20.0), draw(1.0)));
         (goal.tolerance, goal.heading_tolerance) = (draw(0.1), draw(0.1));
         let who = if k % 2 == 0 { &alone } else { &model };
