@@ -21,6 +21,7 @@ mod laws;
 mod link;
 mod load;
 mod manuals;
+mod plan;
 mod print;
 mod program;
 mod progress;
@@ -53,6 +54,7 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             Subcommands::Diff(_)
                 | Subcommands::Compare(_)
                 | Subcommands::Check(_)
+                | Subcommands::Plan(_)
                 | Subcommands::Scenes(_)
                 | Subcommands::Laws(_)
                 | Subcommands::Schema
@@ -74,6 +76,7 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Some(Subcommands::Link(args)) => link::link(&args),
         Some(Subcommands::Capture(args)) => capture::capture(&args),
         Some(Subcommands::Film(args)) => film::film(&args),
+        Some(Subcommands::Plan(args)) => plan::plan(&args),
         Some(Subcommands::Tune(args)) => tune::tune(&args),
         Some(Subcommands::Budget(args)) => budget::budget(&args),
         Some(Subcommands::Stills(args)) => stills::stills(&args),

@@ -2,7 +2,7 @@
 
 use crate::{
     accuracy, budget, capture, certify, check, compare, dataset, diff, doctor, figures, film, lab, laws,
-    link, manuals, replay, run, scenes, stills, tune,
+    link, manuals, plan, replay, run, scenes, stills, tune,
 };
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
@@ -38,6 +38,8 @@ pub(crate) enum Subcommands {
     Stills(stills::StillsArgs),
     /// Compare pictures, or folders of pictures, by perceptual similarity, and show where they differ
     Compare(compare::CompareArgs),
+    /// Plan the ways of lead robots to their goals without a run, and show them
+    Plan(plan::PlanArgs),
     /// Search for gains that fit a scene's vehicles, and print them
     Tune(tune::TuneArgs),
     /// Compute an error budget: run the scene with better and worse sensing, side by side

@@ -7,8 +7,7 @@ use crate::{
     text::{
         Couple, Flag, Form, Node, Reporter, Triple,
         form::Number,
-        integer,
-        keys,
+        integer, keys,
         keys::one_of,
         kinds::{Kind, Kinds},
         list, number, table,

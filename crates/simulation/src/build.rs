@@ -66,6 +66,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         sensor_config: sensor_config(scene, &followers, &edges, &members, &stage),
         safety_config: safety_config(scene, &members, &stage),
         chased,
+        planned,
         events: Arc::new(event_plan(scene)?),
         filters: filters(&scene.robots),
         fleet: FleetInfo {

@@ -36,8 +36,9 @@ pub use events::{EventAction, EventPlan, HandOverRules, Holds, PlannedEvent, Rec
 pub use fault::{Fault, NotFinite};
 pub use gates::{Gate, gates, narrowest};
 pub use in_line::in_line;
-pub use planned::PlannedMotion;
 pub use parameters::{ParameterSet, ScheduledChange};
+pub use planned::PlannedMotion;
+pub use planning::{MotionPlan, PlanPoint};
 pub use safety::SafetyConfig;
 pub use setup::Setup;
 pub use simulation::Simulation;

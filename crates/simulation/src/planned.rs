@@ -5,8 +5,8 @@ use crate::error::BuildError;
 use formation::column::{cartesian, column};
 use formation::{EdgeLaw, Graph, Heading};
 use planning::{
-    BodyShape, Boundary, Convex, FollowerModel, FormationModel, HeadingLag, Map, Mission, MotionPlan, NoWay, NoWayReason,
-    PlanError, PlanGoal, PlanPoint, PlanRequest, PlanStart, TravelLimits, plan_tour,
+    BodyShape, Boundary, Convex, FollowerModel, FormationModel, HeadingLag, Map, Mission, MotionPlan, NoWay,
+    NoWayReason, PlanError, PlanGoal, PlanPoint, PlanRequest, PlanStart, TravelLimits, plan_tour,
 };
 use scene::{Path, PropMotion, Role, Scene, Travel};
 use std::collections::BTreeMap;
@@ -19,6 +19,8 @@ pub struct PlannedMotion {
     parts: Vec<Part>,
     /// The robots that the plans hold for, by their numbers in the run, the lead first.
     pub robots: Vec<usize>,
+    /// Levels of the formation, from its shape to its column.
+    pub levels: usize,
 }
 
 /// A plan, and when it begins, s.
@@ -53,7 +55,8 @@ impl Trajectory for PlannedMotion {
 /// Between two points of a plan the lead gains speed or brakes evenly, and its curvature changes evenly with its way.
 fn motion(points: &[PlanPoint], time: f64) -> MotionInput {
     let after = points.partition_point(|point| point.time <= time);
-    let (Some(a), Some(b)) = (after.checked_sub(1).and_then(|index| points.get(index)), points.get(after)) else {
+    let (Some(a), Some(b)) = (after.checked_sub(1).and_then(|index| points.get(index)), points.get(after))
+    else {
         return MotionInput::default();
     };
     let (span, way) = (b.time - a.time, b.way - a.way);
@@ -93,7 +96,10 @@ pub(crate) fn planned(
             .map(|goal| PlanGoal { heading: goal.heading, ..PlanGoal::to(goal.position) })
             .collect();
         let convoy = Convoy::of(scene, graph, laws, lead);
-        let invalid = |error: planning::InputError| BuildError::Plan { robot: robot.name.clone(), why: error.to_string() };
+        let invalid = |error: planning::InputError| BuildError::Plan {
+            robot: robot.name.clone(),
+            why: error.to_string(),
+        };
         let model = convoy.model(scene).map_err(invalid)?;
         let (map, props) = map(scene, robot.pose, &goals, &model, travel).map_err(invalid)?;
         let limits = convoy.limits(scene, travel);
@@ -114,7 +120,10 @@ pub(crate) fn planned(
             begins += part.plan.duration() + pause;
             part
         });
-        found.insert(lead, Arc::new(PlannedMotion { parts: parts.collect(), robots: convoy.robots }));
+        found.insert(
+            lead,
+            Arc::new(PlannedMotion { parts: parts.collect(), robots: convoy.robots, levels: model.levels() }),
+        );
     }
     Ok(found)
 }
@@ -148,7 +157,9 @@ impl Convoy {
         for &index in graph.evaluation_order() {
             let (edge, law) = (graph.edges()[index], &laws[index]);
             // Of two leaders the first counts.
-            let Some(leader) = place_of[edge.leader].filter(|_| place_of[edge.follower].is_none()) else { continue };
+            let Some(leader) = place_of[edge.leader].filter(|_| place_of[edge.follower].is_none()) else {
+                continue;
+            };
             place_of[edge.follower] = Some(robots.len());
             robots.push(edge.follower);
             let heading = match law.law.heading {
@@ -174,7 +185,8 @@ impl Convoy {
             let [wide, column] = follower.places;
             let wide = wide.unwrap_or_default();
             let ends = [wide, column.unwrap_or(wide)];
-            FollowerModel::narrowing(follower.leader, ends, steps, body(*robot)).with_heading(follower.heading)
+            FollowerModel::narrowing(follower.leader, ends, steps, body(*robot))
+                .with_heading(follower.heading)
         });
         FormationModel::new(body(self.robots[0]), followers.collect())
     }
@@ -188,9 +200,11 @@ impl Convoy {
         // A vehicle of another size turns as much on its own length.
         let scale = USUAL_LENGTH / long;
         let curvature = (usual.curvature * scale).min(STEERING_USED * limits.curvature_max);
-        let steering = (usual.steering * scale).min(
-            if lead.kind.steers() { STEERING_USED * lead.steering_rate / lead.wheelbase } else { f64::INFINITY },
-        );
+        let steering = (usual.steering * scale).min(if lead.kind.steers() {
+            STEERING_USED * lead.steering_rate / lead.wheelbase
+        } else {
+            f64::INFINITY
+        });
         let followers = || vehicles().skip(1).map(scene::Vehicle::limits);
         let outer = followers().map(|limits| limits.speed_max).fold(f64::INFINITY, f64::min).min(FASTEST);
         let speed = travel.speed.min(limits.speed_max);
@@ -268,9 +282,10 @@ fn map(
         });
         names.push(prop.name.clone());
     }
-    let around = AROUND + (0..model.levels()).flat_map(|level| model.places(level)).fold(0.0, |most: f64, place| {
-        most.max(math::hypot(place[0], place[1]))
-    });
+    let around = AROUND
+        + (0..model.levels())
+            .flat_map(|level| model.places(level))
+            .fold(0.0, |most: f64, place| most.max(math::hypot(place[0], place[1])));
     let places = [[start.x, start.y]].into_iter().chain(goals.iter().map(|goal| goal.position));
     let things = obstacles.iter().flat_map(|thing| {
         let ([x, y], reach) = (thing.centre(), thing.reach());
@@ -290,15 +305,23 @@ fn map(
 /// Why there is no way, with the names of the scene.
 fn told(no_way: &NoWay, scene: &Scene, robots: &[usize], props: &[String]) -> String {
     let thing = |boundary: &Boundary| match boundary {
-        Boundary::Obstacle(index) => props.get(*index).map_or_else(|| boundary.to_string(), |name| format!("`{name}`")),
+        Boundary::Obstacle(index) => {
+            props.get(*index).map_or_else(|| boundary.to_string(), |name| format!("`{name}`"))
+        }
         Boundary::Ground(_) => "the edge of the map".to_owned(),
     };
     let robot = |index: usize| {
-        robots.get(index).map_or_else(|| format!("robot {index}"), |robot| format!("`{}`", scene.robots[*robot].name))
+        robots
+            .get(index)
+            .map_or_else(|| format!("robot {index}"), |robot| format!("`{}`", scene.robots[*robot].name))
     };
     let mut text = match &no_way.reason {
         NoWayReason::StartBlocked { robot: index, by } => {
-            format!("{} starts too near to {}: move it, or ask for less `clearance`", robot(*index), thing(by))
+            format!(
+                "{} starts too near to {}: move it, or ask for less `clearance`",
+                robot(*index),
+                thing(by)
+            )
         }
         NoWayReason::GoalBlocked { by } => {
             format!("at its goal it is too near to {}: move the goal, or ask for less `clearance`", thing(by))
@@ -309,7 +332,11 @@ fn told(no_way: &NoWay, scene: &Scene, robots: &[usize], props: &[String]) -> St
         let [a, b] = &gap.between;
         let [x, y] = gap.at.map(|value| short((10.0 * value).round() / 10.0));
         let width = short((100.0 * gap.width).round() / 100.0);
-        text += &format!("; what is in the way is the gap of {width} m between {} and {} at [{x}, {y}]", thing(a), thing(b));
+        text += &format!(
+            "; what is in the way is the gap of {width} m between {} and {} at [{x}, {y}]",
+            thing(a),
+            thing(b)
+        );
     }
     if let Some(offer) = &no_way.offer {
         text += &format!("; there is {offer}");

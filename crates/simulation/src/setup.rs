@@ -2,9 +2,11 @@
 
 use crate::events::EventPlan;
 use crate::parameters::ScheduledChange;
+use crate::planned::PlannedMotion;
 use crate::safety::SafetyConfig;
 use formation::Formation;
 use perception::sensors::SensorConfig;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use vocabulary::{FleetInfo, ObserverStart, TimeMode};
 use world::{Unicycle, WorldSetup};
@@ -26,6 +28,8 @@ pub struct Setup {
     pub events: Arc<EventPlan>,
     /// Lead robots that go by commands, and the motions that they chase.
     pub chased: Vec<(usize, Unicycle)>,
+    /// Lead robots that have goals, and how they get there.
+    pub planned: BTreeMap<usize, Arc<PlannedMotion>>,
     /// What safety filters go by; `None` where no robot senses what is near it.
     pub safety_config: Option<Arc<SafetyConfig>>,
     /// Barriers, per robot; `None` where its filter is off.

@@ -5,6 +5,7 @@ use crate::chase::Chases;
 use crate::events::Events;
 use crate::fault::Fault;
 use crate::parameters::{ParameterSet, pending, sample_at};
+use crate::planned::PlannedMotion;
 use crate::plant::Plant;
 use crate::safety::SafetyPipeline;
 use crate::sensing::SensingPipeline;
@@ -12,7 +13,7 @@ use crate::setup::Setup;
 use crate::step::{act, sense, step};
 use formation::{AgentAction, Decision, EdgeLaw, Estimate, Formation, FormationState};
 use laws::{BatchLaw, Input};
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use vocabulary::{
     CameraRenderer, Contact, Edge, EdgeState, EntityId, FleetInfo, Limits, MeasurementRecord, Observation,
@@ -36,6 +37,8 @@ pub struct Simulation {
     pub(crate) batch: Option<BatchPipeline>,
     /// Robots that lead by commands.
     pub(crate) chases: Chases,
+    /// Lead robots that have goals.
+    planned: Arc<BTreeMap<usize, Arc<PlannedMotion>>>,
     pub(crate) events: Events,
     /// Limits and drivers as they were set last.
     pub(crate) handling: Vec<Handling>,
@@ -87,6 +90,7 @@ impl Simulation {
             setup.safety_config.map(|config| SafetyPipeline::new(config, setup.filters, setup.period));
         Self {
             chases: Chases::new(&setup.chased),
+            planned: Arc::new(setup.planned),
             events: Events::new(setup.events, setup.fleet.robots.len()),
             handling,
             fleet: setup.fleet,
@@ -168,6 +172,11 @@ impl Simulation {
     /// Names, bodies and edges of the run.
     pub fn fleet(&self) -> &FleetInfo {
         &self.fleet
+    }
+
+    /// Lead robots that have goals, by their numbers, and how they get there.
+    pub fn planned(&self) -> &BTreeMap<usize, Arc<PlannedMotion>> {
+        &self.planned
     }
 
     /// Graph, laws and set points of the run.

@@ -29,6 +29,7 @@ pub mod likeness;
 pub mod link;
 #[cfg(not(target_family = "wasm"))]
 pub mod pace;
+pub mod plans;
 #[cfg(not(target_family = "wasm"))]
 mod record_source;
 #[cfg(not(target_family = "wasm"))]

@@ -1,0 +1,155 @@
+//! `echelon plan`: the ways of lead robots to their goals, without a run.
+
+use crate::Outcome;
+use crate::args::SceneArgs;
+use crate::failure::Failure;
+use crate::load::{load, stem};
+use crate::print::{json, say};
+use clap::Args;
+use figures::{Plan, PlanOutline, PlanPath, Rgb, Stroke};
+use output::{Place, write_whole};
+use serde_json::json;
+use std::fmt::Write;
+use std::path::PathBuf;
+use studies::SceneRun;
+use studies::plans::{PlannedWay, plans};
+use vocabulary::{Pose, Solid, counted};
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    #[command(flatten)]
+    scene: SceneArgs,
+    /// Folder for the picture, plan.svg, and the points of the ways, plan.csv; earlier ones are replaced
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+pub(crate) fn plan(args: &PlanArgs) -> Outcome {
+    let run = load(&args.scene)?;
+    let ways = plans(&run);
+    if ways.is_empty() {
+        let text = format!(
+            "{}: nothing is planned in it: no robot that leads has a path of kind \"goal\" or \"tour\"",
+            args.scene.scene.display()
+        );
+        return Err(Failure::Usage(text));
+    }
+    if let Some(folder) = &args.out {
+        let _place = Place::folder(folder)?;
+        write_whole(&folder.join("plan.svg"), picture(&run, &ways).svg().as_bytes())?;
+        write_whole(&folder.join("plan.csv"), table(&ways).as_bytes())?;
+    }
+    if args.scene.json {
+        json(&json!({ "scene": stem(&args.scene.scene), "ways": ways }));
+    } else if !args.scene.quiet {
+        for way in &ways {
+            say(&line(way));
+        }
+    }
+    Ok(())
+}
+
+fn line(way: &PlannedWay) -> String {
+    let shape = match way.narrowest {
+        0.0 => "in its shape throughout".to_owned(),
+        1.0 => "down to its column".to_owned(),
+        share => format!("narrowed by {:.0} % at most", 100.0 * share),
+    };
+    format!(
+        "{} to goal {}: {:.1} m in {:.1} s from {:.1} s on; {}, {shape}; {} swept",
+        way.lead,
+        way.goal,
+        way.length,
+        way.duration,
+        way.begins,
+        counted(way.robots.len(), "robot"),
+        counted(way.expansions, "step"),
+    )
+}
+
+/// A row for every robot and point.
+fn table(ways: &[PlannedWay]) -> String {
+    let mut text = String::from(
+        "lead,goal,time_s,way_m,curvature_per_m,speed_m_per_s,narrowing,robot,x_m,y_m,heading_rad\n",
+    );
+    for way in ways {
+        for row in &way.rows {
+            for (robot, pose) in way.robots.iter().zip(&row.poses) {
+                // Writing to a text cannot fail.
+                let _ = writeln!(
+                    text,
+                    "{},{},{},{},{},{},{},{robot},{},{},{}",
+                    way.lead,
+                    way.goal,
+                    row.time,
+                    row.way,
+                    row.curvature,
+                    row.speed,
+                    row.narrowing,
+                    pose.x,
+                    pose.y,
+                    pose.heading
+                );
+            }
+        }
+    }
+    text
+}
+
+/// The ways of all robots over what stands there; the lead's is dark.
+fn picture(run: &SceneRun, ways: &[PlannedWay]) -> Plan {
+    let colours = rendering::robot_colours(run.simulation.fleet());
+    let names: Vec<&str> = run.simulation.fleet().robots.iter().map(|robot| &*robot.name).collect();
+    let colour = |name: &str| -> Rgb {
+        let index = names.iter().position(|known| *known == name);
+        index.and_then(|index| colours.get(index).copied()).unwrap_or([0.3; 3])
+    };
+    let mut tracks = vec![];
+    for way in ways {
+        for (k, robot) in way.robots.iter().enumerate().rev() {
+            tracks.push(PlanPath {
+                points: way
+                    .rows
+                    .iter()
+                    .filter_map(|row| row.poses.get(k))
+                    .map(|pose| [pose.x, pose.y])
+                    .collect(),
+                colour: if k == 0 { [0.1; 3] } else { colour(robot) },
+                stroke: Stroke::Solid,
+                faint: k > 0,
+            });
+        }
+    }
+    let outlines = run.scene.props.iter().map(|prop| PlanOutline {
+        points: outline(prop.pose, &prop.solid),
+        colour: [0.45; 3],
+        filled: 0.5,
+    });
+    Plan {
+        title: format!("{}: the plan", run.scene.title),
+        axes: Some(["x (m)".to_owned(), "y (m)".to_owned()]),
+        tracks,
+        outlines: outlines.collect(),
+        width: 170.0,
+        height: 140.0,
+        ..Plan::default()
+    }
+}
+
+/// Corners of a circle as it is drawn.
+const CORNERS: u32 = 32;
+
+fn outline(pose: Pose, solid: &Solid) -> Vec<[f64; 2]> {
+    match *solid {
+        Solid::Block { size } | Solid::Wedge { size } => [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]
+            .map(|[x, y]: [f64; 2]| pose.world_from_body(0.5 * x * size[0], 0.5 * y * size[1]))
+            .to_vec(),
+        Solid::Cylinder { radius, .. } | Solid::Cone { radius, .. } => (0..CORNERS)
+            .map(|k| {
+                let (sin, cos) =
+                    vocabulary::math::sin_cos(std::f64::consts::TAU * f64::from(k) / f64::from(CORNERS));
+                [pose.x + radius * cos, pose.y + radius * sin]
+            })
+            .collect(),
+    }
+}
