@@ -45,6 +45,8 @@ shipped![
     "gate-2",
     "gate-1.5",
     "gate-1.2",
+    "maze-three",
+    "warehouse-seven",
     "chain-twenty",
     "stop-and-go",
     "stop-and-go-curve",
