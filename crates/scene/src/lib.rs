@@ -55,9 +55,9 @@ pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, scene_name, shipped};
 pub use text::node::composed;
 pub use types::{
-    Change, Compensation, Environment, Event, Expect, Failure, Film, Follow, Ground, HandOver, Happening,
-    Holds, Joining, Law, LawSource, Leader, Leaders, Narrowing, Noise, Observer, OnContact, Patch, Path,
-    Physics, Place, Plot, PropMotion, PropSpec, Proximity, Recovery, Relief, Robot, Role, Safety, Scene,
-    Sensing, SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Trigger, Vehicle, VehicleKind, Views,
-    Vision, When, WrittenLaw,
+    Change, Compensation, Environment, Event, Expect, Failure, Film, Follow, Goal, Ground, HandOver,
+    Happening, Holds, Joining, Law, LawSource, Leader, Leaders, Narrowing, Noise, Observer, OnContact, Patch,
+    Path, Physics, Place, Plot, PropMotion, PropSpec, Proximity, Recovery, Relief, Robot, Role, Safety,
+    Scene, Sensing, SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Travel, Trigger, Vehicle,
+    VehicleKind, Views, Vision, When, WrittenLaw,
 };

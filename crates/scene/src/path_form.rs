@@ -131,7 +131,7 @@ keys! {
         /// How long it stays at each, s.
         pause: f64 = TIME, or(0.0);
         /// How often it goes through all of them.
-        rounds: u32 = integer(1, 1000), or(1);
+        rounds: u32 = integer::<u32>(1, 1000), or(1);
         /// Speed of the lead where nothing slows it, m/s.
         speed: f64 = TRAVEL_SPEED, or(0.8);
         /// How it gains speed and brakes, m/s².
