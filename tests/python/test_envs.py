@@ -394,3 +394,12 @@ def test_everything_public_is_documented():
         if callable(thing):
             own = {"": thing} | {k: v for k, v in vars(thing).items() if callable(v) and not k.startswith("_")}
             assert all(member.__doc__ for member in own.values()), name
+
+
+def test_rewards_are_numbers_and_tasks_are_tasks():
+    env = FormationVectorEnv("circle-three", num_envs=2, task=Task(reward=lambda signals: signals.effort * np.nan))
+    env.reset(seed=1)
+    with pytest.raises(ValueError, match="reward of agent 0 in copy 0"):
+        env.step(env.action_space.sample())
+    with pytest.raises(TypeError, match="num_envs=64"):
+        FormationVectorEnv("circle-three", 64)

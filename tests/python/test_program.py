@@ -5,6 +5,7 @@ import os
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -49,7 +50,7 @@ def test_an_interrupt_leaves_a_readable_run(tmp_path):
     command, options = started("run", "hundred", "--set", "time.duration=2000", "--set", "expect={}", "-o", tmp_path / "run")
     with subprocess.Popen(command, **options) as process:
         while not (tmp_path / "run/tables/edges.parts").is_dir() and process.poll() is None:
-            pass
+            time.sleep(0.01)
         process.send_signal(signal.SIGINT)
         _, told = process.communicate(timeout=60)
     assert process.returncode == 130 and "Traceback" not in told, told

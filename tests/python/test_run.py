@@ -95,3 +95,11 @@ def test_a_run_plots_its_errors(run):
     upper, lower = run.plot()
     assert upper.get_title() == run.title and len(lower.lines) == 2
     assert run._repr_png_().startswith(b"\x89PNG")
+
+
+def test_a_run_that_is_there_is_replaced_on_request(tmp_path):
+    run = Scene.load("line-three").set({"time.duration": 0.1, "expect": {}}).run()
+    run.save(tmp_path / "run")
+    with pytest.raises(OSError, match="force=True"):
+        run.save(tmp_path / "run")
+    run.save(tmp_path / "run", force=True)

@@ -56,8 +56,8 @@ impl Primitives {
         let regular = (2 * n + 1) as usize;
         let reach = if unit > 0.0 { change / unit * (1.0 + 1e-9) } else { 0.0 };
         let steps = [false, true].map(|backwards| {
-            let froms = curvatures.iter();
-            froms
+            let from_each = curvatures.iter();
+            from_each
                 .map(|from| {
                     let near = (0..regular).filter(|to| {
                         let units = if unit > 0.0 { (curvatures[*to] - from) / unit } else { 0.0 };

@@ -47,7 +47,8 @@ pub(crate) fn of_study(error: &studies::Error) -> PyErr {
 /// Something that another thread is at work on.
 pub(crate) fn busy() -> PyErr {
     BusyError::new_err(
-        "another thread is at work on this simulation: wait for it, or give each thread a fork() of its own",
+        "another thread is at work on this simulation, or it is what calls this function: wait until it is done, or give each a \
+         fork() of its own",
     )
 }
 

@@ -236,7 +236,11 @@ impl PyRun {
             let certificates = self.metrics.certificates.clone();
             recorder.conclude(self.status, certificates, &self.findings).written.map(drop)
         })?;
-        written.map_err(|error: recording::Error| PyOSError::new_err(error.to_string()))
+        // Who writes Python has arguments in place of options.
+        let told = |error: recording::Error| {
+            error.to_string().replace(" with --out", "").replace("give --force", "give `force=True`")
+        };
+        written.map_err(|error| PyOSError::new_err(told(error)))
     }
 
     fn __repr__(&self) -> String {

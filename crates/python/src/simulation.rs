@@ -41,6 +41,8 @@ struct Driven {
     /// The record before the last, between which pictures are drawn.
     before: StepRecord,
     drawing: PictureCache,
+    /// By how much the last sample is later than what was asked for, s.
+    ahead: f64,
 }
 
 impl Driven {
@@ -50,6 +52,7 @@ impl Driven {
         let Some(record) = self.simulation.next_record() else { return false };
         self.digest.push(record);
         self.trail.push(record);
+        self.ahead = 0.0;
         true
     }
 
@@ -82,6 +85,7 @@ impl PySimulation {
             before: simulation.record().clone(),
             simulation,
             drawing: PictureCache::default(),
+            ahead: 0.0,
         };
         let period = driven.simulation.period();
         // So that there is a state to look at.
@@ -150,6 +154,8 @@ impl PySimulation {
 
     /// Computes all samples of the next seconds, or to the end of the run. Ctrl-C ends it at a sample, and it can go on.
     ///
+    /// The last sample is the first that is not before the time asked for. Calls add up: 600 times 1/60 s are 10 s.
+    ///
     /// Parameters
     /// ----------
     /// seconds : float, optional
@@ -158,24 +164,28 @@ impl PySimulation {
     ///     Called with the samples done and in all.
     #[pyo3(signature = (seconds=None, *, progress=None))]
     fn advance(&self, py: Python<'_>, seconds: Option<f64>, progress: Option<Py<PyAny>>) -> PyResult<()> {
-        let last = {
+        let (last, asked) = {
             let driven = self.driven()?;
-            let end = driven.simulation.len() - 1;
+            let (end, now) = (driven.simulation.len() - 1, driven.simulation.record().snapshot.time);
             match seconds {
-                None => end,
-                Some(seconds) if seconds.is_finite() && seconds > 0.0 => {
-                    let until = driven.simulation.record().snapshot.time + seconds;
-                    driven.simulation.sample_at(until).min(end)
+                None => (end, None),
+                Some(seconds) if seconds.is_finite() && seconds >= 0.0 => {
+                    let until = now - driven.ahead + seconds;
+                    (driven.simulation.sample_at(until).min(end), Some(until))
                 }
                 Some(seconds) => {
                     let text = format!(
-                        "a simulation does not advance by {seconds} s: give a positive number of seconds"
+                        "a simulation does not advance by {seconds} s: give a number of seconds, 0 or more"
                     );
                     return Err(PyValueError::new_err(text));
                 }
             }
         };
-        self.run_to(py, last, progress)
+        self.run_to(py, last, progress)?;
+        let mut driven = self.driven()?;
+        let now = driven.simulation.record().snapshot.time;
+        driven.ahead = asked.map_or(0.0, |asked| (now - asked).clamp(0.0, self.period));
+        Ok(())
     }
 
     /// Sets values from the next sample on, as if the scene had a change there; `scene` has it then.
@@ -215,6 +225,7 @@ impl PySimulation {
             trail: driven.trail.clone(),
             before: driven.before.clone(),
             drawing: PictureCache::default(),
+            ahead: driven.ahead,
         };
         drop(driven);
         match raised() {
@@ -356,10 +367,13 @@ impl PySimulation {
         matrix(py, numbers, edge_columns().len())
     }
 
-    fn __repr__(&self) -> PyResult<String> {
-        let driven = self.driven()?;
+    fn __repr__(&self) -> String {
+        // Who looks for what is wrong sees that it is at work, and no error.
+        let Ok(driven) = self.driven() else {
+            return format!("<echelon.Simulation of {}: at work>", self.fleet.title);
+        };
         let Scene { title, time, .. } = driven.scene.scene();
         let now = driven.simulation.record().snapshot.time;
-        Ok(format!("<echelon.Simulation of {title}: {now:.2} of {} s>", time.duration))
+        format!("<echelon.Simulation of {title}: {now:.2} of {} s>", time.duration)
     }
 }

@@ -16,7 +16,8 @@ use std::sync::Arc;
 /// The name that the Arrow PyCapsule interface gives to streams.
 const STREAM: &CStr = c"arrow_array_stream";
 
-/// A table of a run. pandas, polars, DuckDB and pyarrow take it as it is; ``table["x_m"]`` is a column.
+/// A table of a run, an Arrow stream: ``polars.DataFrame(table)``, ``pyarrow.table(table)`` and, from pandas 3 on,
+/// ``pandas.DataFrame.from_arrow(table)`` take it as it is; ``table["x_m"]`` is a column.
 #[pyclass(name = "Table", module = "echelon", frozen)]
 pub(crate) struct PyTable {
     name: &'static str,

@@ -232,7 +232,9 @@ class Scene:
 
 @final
 class Table:
-    """A table of a run. pandas, polars, DuckDB and pyarrow take it as it is; ``table["x_m"]`` is a column."""
+    """A table of a run, an Arrow stream: ``polars.DataFrame(table)``, ``pyarrow.table(table)`` and, from pandas 3 on,
+    ``pandas.DataFrame.from_arrow(table)`` take it as it is; ``table["x_m"]`` is a column.
+    """
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
         """The Arrow PyCapsule interface: pandas, polars, DuckDB and pyarrow take the table by it without a copy."""
     @property
@@ -339,6 +341,8 @@ class Simulation:
         self, seconds: float | None = None, *, progress: Callable[[int, int], Any] | None = None
     ) -> None:
         """Computes all samples of the next seconds, or to the end of the run. Ctrl-C ends it at a sample, and it can go on.
+
+        The last sample is the first that is not before the time asked for. Calls add up: 600 times 1/60 s are 10 s.
 
         Parameters
         ----------

@@ -54,6 +54,8 @@ class Core:
     ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f'render_mode is None or "rgb_array", not {render_mode!r}: there is no window')
+        if not (task is None or isinstance(task, Task)):
+            raise TypeError(f"`task` is an echelon.envs.Task, not {task!r}: name other arguments, as in num_envs=64")
         self.scene = scene if isinstance(scene, Scene) else Scene.load(scene)
         self.task = task or Task()
         everything = self.scene.to_dict()
