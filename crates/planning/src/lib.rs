@@ -8,6 +8,7 @@
 //! trailing  where followers are, by the law's own equations     trailing.rs
 //! smooth    less steering, within all limits                    smooth.rs, sensitivity.rs
 //! speed     forwards and backwards over the way                 speed.rs
+//! timing    other speeds, or a wait, where something moves       timing.rs, meeting.rs, moving.rs
 //! offer     why there is no way, and for whom there is one      offer.rs, gap.rs
 //! ```
 //!
@@ -26,7 +27,9 @@ mod heuristic;
 mod leg;
 mod limits;
 mod map;
+mod meeting;
 mod mission;
+mod moving;
 mod offer;
 mod plan;
 mod planner;
@@ -38,6 +41,7 @@ mod sensitivity;
 mod shot;
 mod smooth;
 mod speed;
+mod timing;
 mod trailing;
 pub mod trial;
 
@@ -49,9 +53,12 @@ pub use gap::Gap;
 pub use leg::{CurvatureKnot, Leg};
 pub use limits::TravelLimits;
 pub use map::{Boundary, Map};
+pub use meeting::Meeting;
 pub use mission::{CostWeights, Mission, PlanGoal, PlanRequest, PlanStart, SearchEffort};
+pub use moving::{MovingThing, TrackPoint};
 pub use offer::{NoWay, NoWayReason, Offer};
 pub use plan::{MotionPlan, PlanPoint};
 pub use planner::{PlanError, TourError, plan, plan_tour};
 pub use reeds_shepp::{ReedsSheppPart, ReedsSheppPath, shortest_reeds_shepp};
 pub use rrt::{RrtEffort, rrt_star};
+pub use timing::{Unavoidable, WAITS_MOST, plan_among};

@@ -112,6 +112,14 @@ impl Map {
         Ok(Self { clearance, ..self.clone() })
     }
 
+    /// The map with one more obstacle.
+    #[must_use]
+    pub fn with(&self, obstacle: Convex) -> Self {
+        let mut obstacles = self.obstacles.clone();
+        obstacles.push(obstacle);
+        self.with_obstacles(obstacles)
+    }
+
     /// The map without one of its obstacles.
     #[must_use]
     pub fn without(&self, obstacle: usize) -> Self {
@@ -119,6 +127,10 @@ impl Map {
         if obstacle < obstacles.len() {
             obstacles.remove(obstacle);
         }
+        self.with_obstacles(obstacles)
+    }
+
+    fn with_obstacles(&self, obstacles: Vec<Convex>) -> Self {
         let corners: Vec<_> = self.ground.corners().collect();
         let [low, high] = box_of(&corners);
         let nearest = NearestGrid::new(low, high, &obstacles);

@@ -212,7 +212,7 @@ fn piece_length(leg: &Leg) -> f64 {
 
 impl PlanPoint {
     /// Between this point and another; time and speed are this one's.
-    fn between(&self, other: &Self, share: f64) -> Self {
+    pub(crate) fn between(&self, other: &Self, share: f64) -> Self {
         let mix = |a: f64, b: f64| a + share * (b - a);
         let pose = |a: &Pose, b: &Pose| Pose {
             x: mix(a.x, b.x),

@@ -7,6 +7,7 @@ use crate::offer::{NoWay, NoWayReason, blocked_by, why_not, with_offer};
 use crate::plan::MotionPlan;
 use crate::search::{join, search};
 use crate::smooth::smoothed;
+use crate::timing::Unavoidable;
 use crate::trailing::{Blocked, Convoy, STEP, Sweep, Trailing};
 use thiserror::Error;
 
@@ -19,6 +20,9 @@ pub enum PlanError {
     /// It has no way.
     #[error(transparent)]
     NoWay(Box<NoWay>),
+    /// It has one, and something moves there whenever it goes.
+    #[error(transparent)]
+    Meets(Unavoidable),
 }
 
 /// Plans a way. `stop` is asked now and then whether to go on, with the number of steps swept so far: what has been found
