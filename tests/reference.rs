@@ -199,7 +199,7 @@ impl Case {
         Ok(Setup {
             events: Arc::default(),
             chased: vec![],
-            planned: std::collections::BTreeMap::new(),
+            goals: simulation::Goals::default(),
             safety_config: None,
             filters: vec![None; names.len()],
             changes: vec![],

@@ -56,9 +56,9 @@ fn line(way: &PlannedWay) -> String {
         share => format!("narrowed by {:.0} % at most", 100.0 * share),
     };
     format!(
-        "{} to goal {}: {:.1} m in {:.1} s from {:.1} s on; {}, {shape}; {} swept",
+        "{} {}: {:.1} m in {:.1} s from {:.1} s on; {}, {shape}; {} swept",
         way.lead,
-        way.goal,
+        way.goal.map_or_else(|| "to a stand".to_owned(), |goal| format!("to goal {goal}")),
         way.length,
         way.duration,
         way.begins,
@@ -80,7 +80,7 @@ fn table(ways: &[PlannedWay]) -> String {
                     text,
                     "{},{},{},{},{},{},{},{robot},{},{},{}",
                     way.lead,
-                    way.goal,
+                    way.goal.map_or_else(String::new, |goal| goal.to_string()),
                     row.time,
                     row.way,
                     row.curvature,

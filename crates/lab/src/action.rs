@@ -99,6 +99,15 @@ pub enum Action {
         /// rad.
         bearing: f64,
     },
+    /// Move a goal of a lead robot.
+    Goal {
+        /// The robot.
+        robot: usize,
+        /// Number of the goal, from 0.
+        number: usize,
+        /// In the world, m.
+        place: [f64; 2],
+    },
     /// The user has released the dragged value.
     Release,
     /// Let a robot follow another; both by index.

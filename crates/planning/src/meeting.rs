@@ -1,7 +1,8 @@
 //! Where a formation on its plan comes too near to something that moves.
 
 use crate::convex::{Convex, apart};
-use crate::formation_model::BodyShape;
+use crate::formation_model::{BodyShape, FormationModel};
+use crate::limits::TravelLimits;
 use crate::mission::PlanRequest;
 use crate::moving::MovingThing;
 use crate::plan::{MotionPlan, PlanPoint};
@@ -21,29 +22,40 @@ pub struct Meeting {
 }
 
 impl MotionPlan {
-    /// The first time at which a robot of this plan, which begins at `begins` s, is nearer to one of `things` than the clearance
-    /// of its map. Things are looked at until the plan ends.
+    /// The first time, from `from` s after its beginning on, at which a robot of this plan, which begins at `begins` s, is nearer
+    /// than `clearance` m to one of `things`. Things are looked at until the plan ends.
     pub fn first_meeting(
+        &self,
+        model: &FormationModel,
+        limits: &TravelLimits,
+        clearance: f64,
+        things: &[MovingThing],
+        begins: f64,
+        from: f64,
+    ) -> Option<Meeting> {
+        if things.is_empty() {
+            return None;
+        }
+        let traffic = Traffic::new(self, model, limits, clearance, things, begins);
+        let mut cursor = 0;
+        self.points.windows(2).filter(|pair| pair[1].time > from).find_map(|pair| {
+            let [a, b] = [&pair[0], &pair[1]];
+            let span = b.time - a.time;
+            let acceleration = if span > 0.0 { (b.speed.abs() - a.speed.abs()) / span } else { 0.0 };
+            let stretch =
+                Stretch { way: a.way, speed: a.speed.abs(), acceleration, time: a.time, lasts: span };
+            traffic.meets(&stretch, &mut cursor)
+        })
+    }
+
+    /// The same, of a request's formation and with its map's clearance.
+    pub(crate) fn meeting_of(
         &self,
         request: &PlanRequest<'_>,
         things: &[MovingThing],
         begins: f64,
     ) -> Option<Meeting> {
-        let traffic = Traffic::new(self, request, things, begins);
-        let mut cursor = 0;
-        self.points.windows(2).find_map(|pair| {
-            let [a, b] = [&pair[0], &pair[1]];
-            let acceleration =
-                if b.time > a.time { (b.speed.abs() - a.speed.abs()) / (b.time - a.time) } else { 0.0 };
-            let stretch = Stretch {
-                way: a.way,
-                speed: a.speed.abs(),
-                acceleration,
-                time: a.time,
-                lasts: b.time - a.time,
-            };
-            traffic.meets(&stretch, &mut cursor)
-        })
+        self.first_meeting(request.model, &request.limits, request.map.clearance(), things, begins, 0.0)
     }
 }
 
@@ -81,20 +93,20 @@ const LEAST_SHARE: f64 = 1.0 / 16.0;
 impl<'a> Traffic<'a> {
     pub(crate) fn new(
         plan: &'a MotionPlan,
-        request: &PlanRequest<'_>,
+        model: &FormationModel,
+        limits: &TravelLimits,
+        clearance: f64,
         things: &'a [MovingThing],
         begins: f64,
     ) -> Self {
-        let bodies: Vec<BodyShape> =
-            (0..request.model.robots()).map(|robot| request.model.body(robot)).collect();
+        let bodies: Vec<BodyShape> = (0..model.robots()).map(|robot| model.body(robot)).collect();
         let mut around: f64 = 0.0;
         for point in &plan.points {
             for (pose, body) in point.robots.iter().zip(&bodies) {
                 around = around.max(apart(place(pose), place(&point.pose)) + body.reach());
             }
         }
-        let robots_fastest = request.limits.speed.max(request.limits.outer);
-        let clearance = request.map.clearance();
+        let robots_fastest = limits.speed.max(limits.outer);
         Self { points: &plan.points, things, bodies, begins, clearance, around, robots_fastest }
     }
 

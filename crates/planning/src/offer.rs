@@ -109,6 +109,7 @@ impl fmt::Display for Offer {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.robots {
             1 => write!(f, "one for the lead alone"),
+            robots if self.model.levels() == 1 => write!(f, "one for {robots} of them"),
             robots => write!(f, "one for a column of {robots}"),
         }
     }
@@ -141,7 +142,7 @@ pub(crate) fn why_not(request: &PlanRequest<'_>, ended: Ended, stop: &mut dyn Fn
     }
     offer(request, &mut found, stop);
     found.gap = match &found.offer {
-        Some(offer) => blocking_gap(request, offer),
+        Some(offer) => blocking_gap(request, offer).or_else(widest),
         None => widest(),
     };
     found

@@ -101,6 +101,29 @@ impl MotionPlan {
         Some(PlanPoint { time, speed: side * speed, ..a.between(b, share) })
     }
 
+    /// The plan from `time` s on, with `braking` m/s² to a stand; `None` after its end. It has no legs: it leads to no goal.
+    pub fn stopped(&self, time: f64, braking: f64) -> Option<Self> {
+        let first = self.at_time(time)?;
+        let end = (first.way + first.speed * first.speed / (2.0 * braking)).min(self.length());
+        let side = if first.speed < 0.0 { -1.0 } else { 1.0 };
+        let between =
+            self.points.iter().filter(|point| point.way > first.way + 1e-9 && point.way < end - 1e-9);
+        let mut points: Vec<PlanPoint> = std::iter::once(first.clone()).chain(between.cloned()).collect();
+        points.extend(self.at_way(end));
+        for point in &mut points {
+            let gone = point.way - first.way;
+            let speed = (first.speed * first.speed - 2.0 * braking * gone).max(0.0).sqrt();
+            // v = v₀ − b t.
+            point.time = (first.speed.abs() - speed) / braking;
+            point.speed = side * speed;
+            point.way = gone;
+        }
+        if let Some(last) = points.last_mut() {
+            last.speed = 0.0;
+        }
+        Some(Self { points, legs: vec![], held: vec![], tried: vec![], ..self.clone() })
+    }
+
     /// A number that two plans share only if they are the same to the last bit.
     pub fn digest(&self) -> u64 {
         let points = self.points.iter().flat_map(|point| {

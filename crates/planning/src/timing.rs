@@ -40,7 +40,7 @@ pub fn plan_among(
     stop: &mut dyn FnMut(usize) -> bool,
 ) -> Result<MotionPlan, PlanError> {
     let straight = plan(request, stop)?;
-    let Some(meeting) = straight.first_meeting(request, things, begins) else { return Ok(straight) };
+    let Some(meeting) = straight.meeting_of(request, things, begins) else { return Ok(straight) };
     let longest = straight.duration();
     let waits = straight.timed_among(request, things, begins);
     if let Ok(timed) = &waits
@@ -78,7 +78,7 @@ fn around(
         map = map.with(things[meeting.thing].swept(time - WINDOW, time + WINDOW));
         let request = PlanRequest { map: &map, ..*request };
         let found = plan(&request, stop).ok()?;
-        match found.first_meeting(&request, things, begins) {
+        match found.meeting_of(&request, things, begins) {
             None => return Some(found),
             Some(next) => {
                 if let Ok(timed) = found.timed_among(&request, things, begins) {
@@ -102,8 +102,9 @@ impl MotionPlan {
         things: &[MovingThing],
         begins: f64,
     ) -> Result<Self, Unavoidable> {
-        let Some(meeting) = self.first_meeting(request, things, begins) else { return Ok(self.clone()) };
-        let traffic = Traffic::new(self, request, things, begins);
+        let Some(meeting) = self.meeting_of(request, things, begins) else { return Ok(self.clone()) };
+        let traffic =
+            Traffic::new(self, request.model, &request.limits, request.map.clearance(), things, begins);
         let mut points: Vec<PlanPoint> = vec![];
         let (mut time, mut stood) = (0.0, 0.0);
         for range in self.between_stops() {

@@ -3,7 +3,7 @@
 use crate::{Column, TableKind};
 use vocabulary::{
     Constraint, Contact, EdgeState, EntityId, EventRecord, FleetInfo, LawQuantity, MeasurementRecord,
-    Placement, RobotState, SafetyState, Word,
+    Placement, PlannedPath, PlannedPoint, Pose, RobotState, SafetyState, Word,
 };
 
 /// A value of a row.
@@ -40,6 +40,7 @@ pub(crate) fn empty(kind: TableKind) -> Vec<Named> {
         TableKind::Safety => safety(0.0, &FleetInfo::default(), &SafetyState::default(), &mut add),
         TableKind::Laws => law(0.0, "", &LawQuantity::default(), 0.0, &mut add),
         TableKind::Events => event(0.0, &FleetInfo::default(), &EventRecord::default(), &mut add),
+        TableKind::Plans => plan(0.0, &FleetInfo::default(), &one_point(), &mut add),
         TableKind::Measurements => measurement([""; 2], &MeasurementRecord::default(), &mut add),
     }
     columns
@@ -171,6 +172,31 @@ pub(crate) fn event(time: f64, fleet: &FleetInfo, event: &EventRecord, row: &mut
     row("leader", Text(event.leader.map_or("", name)));
     row("refusal", Text(event.refusal.word()));
     row("words", Text(&event.words(fleet)));
+}
+
+/// The points of a plan, robot by robot.
+pub(crate) fn plan(time: f64, fleet: &FleetInfo, plan: &PlannedPath, row: &mut Row<'_>) {
+    let name = |robot: usize| fleet.robots.get(robot).map_or("", |robot| &*robot.name);
+    let lead = plan.lead().map_or("", name);
+    for point in &plan.points {
+        for (robot, pose) in plan.robots.iter().zip(&point.poses) {
+            row("time_s", Number(time));
+            row("lead", Text(lead));
+            row("robot", Text(name(*robot)));
+            row("due_s", Number(point.time));
+            row("x_m", Number(pose.x));
+            row("y_m", Number(pose.y));
+            row("heading_rad", Number(pose.heading));
+            row("lead_speed_m_s", Number(point.speed));
+            row("narrowing", Number(point.narrowing));
+        }
+    }
+}
+
+/// A plan of one row.
+fn one_point() -> PlannedPath {
+    let point = PlannedPoint { poses: vec![Pose::default()], ..PlannedPoint::default() };
+    PlannedPath { robots: vec![0], points: vec![point] }
 }
 
 #[cfg(test)]

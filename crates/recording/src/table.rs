@@ -29,6 +29,8 @@ words! {
         Laws = "laws",
         /// What happened to the formation.
         Events = "events",
+        /// Ways to goals, when they are planned.
+        Plans = "plans",
     }
 }
 
@@ -58,6 +60,7 @@ impl TableKind {
             Self::Safety => fleet.has_safety,
             Self::Laws => fleet.has_laws,
             Self::Events => fleet.has_events,
+            Self::Plans => fleet.has_plans,
             _ => true,
         };
         Self::WORDS.iter().map(|(_, kind, _)| *kind).filter(has).collect()
@@ -65,7 +68,8 @@ impl TableKind {
 
     /// Shows `row` the values of every row that `record` adds.
     fn rows(self, fleet: &FleetInfo, record: &StepRecord, row: &mut Row<'_>) {
-        let StepRecord { snapshot, edges: _, contacts, frames, safety, laws, leaders: _, events } = record;
+        let StepRecord { snapshot, edges: _, contacts, frames, safety, laws, leaders: _, events, plans } =
+            record;
         match self {
             Self::Robots => {
                 for (member, robot) in fleet.robots.iter().zip(&snapshot.robots) {
@@ -110,6 +114,11 @@ impl TableKind {
             Self::Events => {
                 for event in events {
                     columns::event(snapshot.time, fleet, event, row);
+                }
+            }
+            Self::Plans => {
+                for plan in plans {
+                    columns::plan(snapshot.time, fleet, plan, row);
                 }
             }
         }

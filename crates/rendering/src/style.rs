@@ -85,6 +85,8 @@ elements! {
     barriers = "barriers",
     /// What happened to the formation lately, in words.
     events = "events",
+    /// Ways to goals that are planned, coloured by the shape of the formation.
+    plans = "plans",
 }
 
 /// Below this scale names could not be read.

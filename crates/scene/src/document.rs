@@ -113,7 +113,7 @@ keys! {
         /// Where it starts: [x in m, y in m, heading]; may be left out with way-points, which say it.
         pose: [f64; 3] = POSE, optional;
         /// Motion of a robot that leads.
-        path: Path = PATH, optional;
+        path: Path = PATH, optional, Live;
         /// Name of the robot that is followed.
         leader: String = NameForm::WHOLE, optional;
         /// Robots that are followed by a law that looks at several, in its order.
@@ -155,7 +155,7 @@ keys! {
         /// Start of the robots' names.
         name: String = NameForm::START, or("robot".to_owned());
         /// Motion of the group's leader; or give `leader`.
-        path: Path = PATH, optional;
+        path: Path = PATH, optional, Live;
         /// Name of a robot outside the group that leads it; or give `path`.
         leader: String = NameForm::WHOLE, optional;
         /// Where the group's leader starts, with a `path`: [x in m, y in m, heading]; the origin, or the path's

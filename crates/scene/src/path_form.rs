@@ -120,6 +120,10 @@ keys! {
         acceleration: f64 = TRAVEL_ACCELERATION, or(0.3);
         /// How far all robots stay off what stands there, m.
         clearance: f64 = CLEARANCE, or(0.25);
+        /// Of several formations those of higher priority plan first, and the others yield to them.
+        priority: u32 = integer::<u32>(0, 1000), or(0);
+        /// How long it waits for a way that is not there, s.
+        patience: f64 = PATIENCE, or(30.0);
     }
 }
 
@@ -138,6 +142,10 @@ keys! {
         acceleration: f64 = TRAVEL_ACCELERATION, or(0.3);
         /// How far all robots stay off what stands there, m.
         clearance: f64 = CLEARANCE, or(0.25);
+        /// Of several formations those of higher priority plan first, and the others yield to them.
+        priority: u32 = integer::<u32>(0, 1000), or(0);
+        /// How long it waits for a way that is not there, s.
+        patience: f64 = PATIENCE, or(30.0);
     }
 }
 
@@ -147,6 +155,8 @@ const TRAVEL_SPEED: Number = number("m/s").above(0.0).up_to(100.0);
 const TRAVEL_ACCELERATION: Number = number("m/s²").above(0.0).up_to(100.0);
 /// How far to stay off things.
 const CLEARANCE: Number = number("m").from(0.0).up_to(100.0);
+/// How long to wait for a way.
+const PATIENCE: Number = number("s").from(0.0).up_to(10_000.0);
 /// Most goals of a tour.
 const MOST_GOALS: usize = 100;
 
@@ -286,13 +296,15 @@ fn from_table(keys: TableKeys, node: &Node, reporter: &mut Reporter) -> Option<P
 
 fn goal(keys: GoalKeys, _: &Node, _: &mut Reporter) -> Option<Path> {
     let (speed, acceleration) = (keys.speed?.value, keys.acceleration?.value);
-    let travel = Travel { speed, acceleration, clearance: keys.clearance?.value };
+    let (priority, patience) = (keys.priority?.value, keys.patience?.value);
+    let travel = Travel { speed, acceleration, clearance: keys.clearance?.value, priority, patience };
     Some(Path::Goal { pose: keys.pose?.value, travel })
 }
 
 fn tour(keys: TourKeys, _: &Node, _: &mut Reporter) -> Option<Path> {
     let (speed, acceleration) = (keys.speed?.value, keys.acceleration?.value);
-    let travel = Travel { speed, acceleration, clearance: keys.clearance?.value };
+    let (priority, patience) = (keys.priority?.value, keys.patience?.value);
+    let travel = Travel { speed, acceleration, clearance: keys.clearance?.value, priority, patience };
     let (goals, pause) = (keys.goals?.value, keys.pause?.value);
     Some(Path::Tour { goals, pause, rounds: keys.rounds?.value, travel })
 }

@@ -5,7 +5,7 @@ use crate::{
     names::{NameForm, POSE},
     path_form::PATH,
     text::{
-        Couple, Form, Found, Keys, Node, Reporter, Triple,
+        Couple, Flag, Form, Found, Keys, Node, Reporter, Triple,
         form::Number,
         keys,
         kinds::{Kind, KindOption, Kinds},
@@ -151,6 +151,8 @@ keys! {
         friction: f64 = FRICTION, or(0.6);
         /// Share of the speed of an impact that it is thrown back with.
         restitution: f64 = RESTITUTION, or(0.1);
+        /// Whether plans to goals know of it from the start; otherwise robots have to sense it.
+        known: bool = Flag, or(true);
     }
 }
 
@@ -165,6 +167,7 @@ pub(crate) struct PropKeys {
     pub(crate) path: Option<Path>,
     pub(crate) friction: f64,
     pub(crate) restitution: f64,
+    pub(crate) known: bool,
 }
 
 /// A table that describes a prop.
@@ -184,6 +187,7 @@ impl Form for PropForm {
             path: shared.path.map(|found| found.value),
             friction: shared.friction?.value,
             restitution: shared.restitution?.value,
+            known: shared.known?.value,
         })
     }
 

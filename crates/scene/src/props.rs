@@ -86,7 +86,8 @@ impl PropStage<'_> {
         }
         let (friction, restitution) = (keys.friction, keys.restitution);
         let name = keys.name.value.clone();
-        let prop = PropSpec { name, solid, pose, elevation, friction, restitution, motion };
+        let prop =
+            PropSpec { name, solid, pose, elevation, friction, restitution, known: keys.known, motion };
         Some(Found { span: keys.name.span, value: prop })
     }
 
@@ -121,6 +122,7 @@ impl PropStage<'_> {
                 motion,
                 friction: keys.friction,
                 restitution: keys.restitution,
+                known: true,
             };
             placed.push(Found { span: keys.name.span, value: prop });
         }

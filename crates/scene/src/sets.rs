@@ -5,7 +5,7 @@ use crate::types::{
     LawPart, NarrowingPart, ObserverPart, ProximityPart, SafetyPart, SensingPart, VehiclePart,
 };
 use crate::vehicle::applies;
-use crate::{Follow, Law, LawSource, Robot, Role, Scene};
+use crate::{Follow, Law, LawSource, Path, Robot, Role, Scene};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use vocabulary::ScalarTrajectory;
@@ -23,7 +23,7 @@ pub(crate) struct ParameterDifference {
 pub(crate) fn refusal(path: &str) -> String {
     format!(
         "`{path}` cannot change while a run goes; what can is `distance`, `bearing`, `law`, `observer` without its `start`, \
-         `narrowing`, the limits of a `vehicle`, and `safety` of a follower"
+         `narrowing`, the limits of a `vehicle`, `safety` of a follower, and the goals of a lead robot"
     )
 }
 
@@ -94,7 +94,7 @@ impl ParameterDifference {
                 is_live::<ProximityPart>,
             );
             match (&a.role, &b.role) {
-                (Role::Lead { path: a }, Role::Lead { path: b }) => self.refuse_unless(a == b, &at, "path"),
+                (Role::Lead { path: a }, Role::Lead { path: b }) => self.note_path([a, b], &at),
                 (Role::Follow(a_role), Role::Follow(b_role)) => {
                     let slowest = a_role.speed == a.vehicle.speed_min && b_role.speed == b.vehicle.speed_min;
                     self.refuse_unless(a_role.speed == b_role.speed || slowest, &at, "speed");
@@ -122,6 +122,16 @@ impl ParameterDifference {
         self.note_table([&a.observer, &b.observer], &format!("{at}observer."), is_live::<ObserverPart>);
         self.note_table([&a.narrowing, &b.narrowing], &format!("{at}narrowing."), is_live::<NarrowingPart>);
         self.note_table([&a.sensing, &b.sensing], &format!("{at}sensing."), is_live::<SensingPart>);
+    }
+
+    /// Where a lead robot goes to may change, but not to a path that says how it goes, nor from one.
+    fn note_path(&mut self, [a, b]: [&Path; 2], at: &str) {
+        let kind = std::mem::discriminant(a) == std::mem::discriminant(b);
+        if kind && a.is_planned() {
+            self.note_table([a, b], &format!("{at}path."), |key| key != "priority");
+        } else {
+            self.refuse_unless(a == b, at, "path");
+        }
     }
 
     /// One part of a set point; whether it is left free stays.

@@ -4,8 +4,8 @@ use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
 use crate::events::event_plan;
 use crate::filing::edge_laws;
+use crate::goals::{goals, wishes};
 use crate::parameters::{ParameterSet, ScheduledChange};
-use crate::planned::planned;
 use crate::safety::SafetyConfig;
 use crate::setup::Setup;
 use crate::stage::{handling, stage};
@@ -41,8 +41,8 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     check_continuous(scene, &followers)?;
 
     let laws = edge_laws(scene);
-    let planned = planned(scene, &graph, &laws)?;
-    let mut stage = stage(scene, &planned)?;
+    let goals = goals(scene, &graph, &laws)?;
+    let mut stage = stage(scene, &goals)?;
     let leading = stage.actors.iter().enumerate();
     let leads = leading.filter_map(|(index, actor)| Some((index, actor.robot.lead.clone()?))).collect();
     let limits = stage.actors.iter().map(|actor| actor.robot.limits).collect();
@@ -66,7 +66,6 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         sensor_config: sensor_config(scene, &followers, &edges, &members, &stage),
         safety_config: safety_config(scene, &members, &stage),
         chased,
-        planned,
         events: Arc::new(event_plan(scene)?),
         filters: filters(&scene.robots),
         fleet: FleetInfo {
@@ -88,15 +87,18 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
             has_sensors: followers.iter().any(|(_, follow)| follow.sensing.kind != SensingKind::Truth),
             has_laws,
             has_events: !scene.events.is_empty() || scene.hand_over.held_up.is_some()
-                // A law that breaks off is an event.
-                || has_laws,
+                // A law that breaks off is an event, and so is what becomes of a plan.
+                || has_laws
+                || !goals.is_empty(),
             has_safety: scene.robots.iter().any(|robot| robot.proximity.range.is_some()),
+            has_plans: !goals.is_empty(),
             props: stage.props.iter().map(|prop| prop.prop.clone()).collect(),
             terrain: stage.terrain.clone(),
         },
         formation: Formation::new(graph, laws, limits, leads, scene.time.period)
             .with_seed(scene.seed)
             .in_continuous_time(scene.time.mode == TimeMode::Continuous),
+        goals,
         stage,
         observer_starts: followers.iter().map(|(_, follow)| follow.observer.start).collect(),
         mode: scene.time.mode,
@@ -123,6 +125,7 @@ fn turn(change: &scene::Change) -> Result<ScheduledChange, BuildError> {
         laws: edge_laws(&change.then),
         handling: change.then.robots.iter().map(|robot| handling(&change.then, robot)).collect(),
         filters: filters(robots),
+        wishes: wishes(robots),
     };
     Ok(ScheduledChange { at: change.at, parameters })
 }

@@ -42,7 +42,8 @@ impl fmt::Display for NotFinite {
 
 /// The first quantity of `record` that is not a finite number.
 pub(crate) fn not_finite(record: &StepRecord, fleet: &FleetInfo) -> Option<NotFinite> {
-    let StepRecord { snapshot, edges, contacts, frames, safety, laws: _, leaders: _, events: _ } = record;
+    let StepRecord { snapshot, edges, contacts, frames, safety, laws: _, leaders: _, events: _, plans: _ } =
+        record;
     let named = |thing| format!("`{}`", fleet.name(thing));
     let found = |whose: String, quantity| NotFinite { whose, quantity, time: snapshot.time };
     let mut robots = snapshot.robots.iter().enumerate();

@@ -1,5 +1,6 @@
 //! The parameters that may change during a run: laws, set points, limits. All others are fixed.
 
+use crate::goals::Wish;
 use crate::setup::Setup;
 use formation::EdgeLaw;
 use std::collections::VecDeque;
@@ -15,6 +16,8 @@ pub struct ParameterSet {
     pub handling: Vec<Handling>,
     /// Barriers, per robot; `None` where its filter is off.
     pub filters: Vec<Option<safety::Parameters>>,
+    /// What lead robots with goals want, by their numbers.
+    pub wishes: Vec<(usize, Arc<Wish>)>,
 }
 
 /// A set of parameters, and from when on it holds.
@@ -36,6 +39,7 @@ impl ParameterSet {
                 .map(|actor| Handling { limits: actor.robot.limits, wheels: actor.wheels.clone() })
                 .collect(),
             filters: setup.filters.clone(),
+            wishes: setup.goals.wishes(),
         }
     }
 }

@@ -20,6 +20,8 @@ pub(crate) fn write_record(run: &mut Simulation, time: f64) {
         run.record.leaders.extend(graph.leaders());
     }
     run.events.told().clone_into(&mut run.record.events);
+    run.goals.told.clone_into(&mut run.record.plans);
+    run.goals.told.clear();
     record_laws(run);
     let graph = run.formation.graph();
     for (index, (edge, out)) in run.formation.edges().iter().zip(&mut run.record.edges).enumerate() {

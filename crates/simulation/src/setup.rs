@@ -1,12 +1,11 @@
 //! Everything that a run starts from.
 
 use crate::events::EventPlan;
+use crate::goals::Goals;
 use crate::parameters::ScheduledChange;
-use crate::planned::PlannedMotion;
 use crate::safety::SafetyConfig;
 use formation::Formation;
 use perception::sensors::SensorConfig;
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use vocabulary::{FleetInfo, ObserverStart, TimeMode};
 use world::{Unicycle, WorldSetup};
@@ -29,7 +28,7 @@ pub struct Setup {
     /// Lead robots that go by commands, and the motions that they chase.
     pub chased: Vec<(usize, Unicycle)>,
     /// Lead robots that have goals, and how they get there.
-    pub planned: BTreeMap<usize, Arc<PlannedMotion>>,
+    pub goals: Goals,
     /// What safety filters go by; `None` where no robot senses what is near it.
     pub safety_config: Option<Arc<SafetyConfig>>,
     /// Barriers, per robot; `None` where its filter is off.

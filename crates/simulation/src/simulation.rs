@@ -4,8 +4,8 @@ use crate::batch::{BatchError, BatchPipeline};
 use crate::chase::Chases;
 use crate::events::Events;
 use crate::fault::Fault;
+use crate::goals::Goals;
 use crate::parameters::{ParameterSet, pending, sample_at};
-use crate::planned::PlannedMotion;
 use crate::plant::Plant;
 use crate::safety::SafetyPipeline;
 use crate::sensing::SensingPipeline;
@@ -13,7 +13,7 @@ use crate::setup::Setup;
 use crate::step::{act, sense, step};
 use formation::{AgentAction, Decision, EdgeLaw, Estimate, Formation, FormationState};
 use laws::{BatchLaw, Input};
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::VecDeque;
 use std::sync::Arc;
 use vocabulary::{
     CameraRenderer, Contact, Edge, EdgeState, EntityId, FleetInfo, Limits, MeasurementRecord, Observation,
@@ -38,7 +38,7 @@ pub struct Simulation {
     /// Robots that lead by commands.
     pub(crate) chases: Chases,
     /// Lead robots that have goals.
-    planned: Arc<BTreeMap<usize, Arc<PlannedMotion>>>,
+    pub(crate) goals: Goals,
     pub(crate) events: Events,
     /// Limits and drivers as they were set last.
     pub(crate) handling: Vec<Handling>,
@@ -90,7 +90,7 @@ impl Simulation {
             setup.safety_config.map(|config| SafetyPipeline::new(config, setup.filters, setup.period));
         Self {
             chases: Chases::new(&setup.chased),
-            planned: Arc::new(setup.planned),
+            goals: setup.goals,
             events: Events::new(setup.events, setup.fleet.robots.len()),
             handling,
             fleet: setup.fleet,
@@ -174,9 +174,9 @@ impl Simulation {
         &self.fleet
     }
 
-    /// Lead robots that have goals, by their numbers, and how they get there.
-    pub fn planned(&self) -> &BTreeMap<usize, Arc<PlannedMotion>> {
-        &self.planned
+    /// Lead robots that have goals, and how they get there.
+    pub fn goals(&self) -> &Goals {
+        &self.goals
     }
 
     /// Graph, laws and set points of the run.

@@ -2,25 +2,21 @@
 
 use crate::drivable::{PathMotion, Undrivable, undrivable};
 use crate::error::BuildError;
-use crate::planned::PlannedMotion;
+use crate::goals::{Goals, PlannedMotion};
 use formation::lead::{
     AnalyticTrajectory, Hermite, SpeedSchedule, SplinePath, SplinePathError, TabulatedTrajectory,
 };
 use scene::{Compensation, Path, PropMotion, Role, Scene, SpeedProfile, VehicleKind};
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use vocabulary::{Limits, Mobility, Placement, Pose, Prop, ScalarTrajectory, Trajectory};
 use world::wheeled::tyre::Tyre;
 use world::{Drivetrain, Handling, PropBody, RobotSetup, Unicycle, Wheeled, WorldSetup};
 
 /// All that is on stage.
-pub(crate) fn stage(
-    scene: &Scene,
-    planned: &BTreeMap<usize, Arc<PlannedMotion>>,
-) -> Result<WorldSetup, BuildError> {
+pub(crate) fn stage(scene: &Scene, goals: &Goals) -> Result<WorldSetup, BuildError> {
     let mut actors = Vec::with_capacity(scene.robots.len());
     for index in 0..scene.robots.len() {
-        actors.push(actor(scene, index, planned.get(&index))?);
+        actors.push(actor(scene, index, goals.motion_of(index))?);
     }
     Ok(WorldSetup {
         actors,

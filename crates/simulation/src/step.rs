@@ -2,6 +2,7 @@
 
 use crate::events::happen;
 use crate::fault::{Fault, not_finite};
+use crate::goals::navigate;
 use crate::parameters::{ParameterSet, wakes};
 use crate::plant::Plant;
 use crate::record::write_record;
@@ -30,8 +31,9 @@ pub(crate) fn sense(run: &mut Simulation) -> bool {
     let time = run.sample as f64 * run.period;
     // 2. Scheduled changes of laws, set points and limits take effect.
     let woken = apply_changes(run);
-    // 3. Robots change their leader, fail or join.
+    // 3. Robots change their leader, fail or join; lead robots with goals plan again.
     happen(run, time);
+    navigate(run, time);
     // 4. The true relative position of every edge.
     perception::observe(run.plant.world().snapshot(), run.formation.edges(), &mut run.observations);
     for edge in woken {
@@ -158,6 +160,7 @@ fn apply(run: &mut Simulation, parameters: &ParameterSet, woken: &mut Vec<usize>
     if let Some(safety) = &mut run.safety {
         safety.filters.clone_from(&parameters.filters);
     }
+    run.goals.adopt(&parameters.wishes);
 }
 
 /// Followers with sensors take the measurements that are due, and correct their estimates by those that have arrived.

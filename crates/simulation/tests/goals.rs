@@ -2,7 +2,7 @@
 
 use scene::{Override, Scene};
 use simulation::{BuildError, Simulation, build};
-use vocabulary::{Contact, StepRecord, math};
+use vocabulary::{Contact, EntityId, EventKind, EventRecord, StepRecord, math};
 
 fn scene(name: &str, sets: &[&str]) -> Scene {
     let text = scene::shipped(name).expect("a shipped scene").text;
@@ -11,7 +11,11 @@ fn scene(name: &str, sets: &[&str]) -> Scene {
 }
 
 fn run(name: &str, sets: &[&str]) -> Vec<StepRecord> {
-    let mut run = Simulation::new(build(&scene(name, sets)).expect("a run"));
+    records_of(&scene(name, sets))
+}
+
+fn records_of(scene: &Scene) -> Vec<StepRecord> {
+    let mut run = Simulation::new(build(scene).expect("a run"));
     let mut records = vec![];
     while let Some(record) = run.next_record() {
         records.push(record.clone());
@@ -62,6 +66,129 @@ fn a_tour_stops_at_every_goal() {
 fn what_has_no_way_is_told_by_the_names_of_the_scene() {
     let told = why_not("maze-three", &["groups.robot.path.pose=[5, 3, 0]"]);
     assert!(told.contains("`robot-1`") && told.contains("`wall-1`"), "{told}");
-    let told = why_not("maze-three", &["props.wall-1.from=[5, -11.5]"]);
-    assert!(told.contains("no way") && told.contains("gap"), "{told}");
+    let told = why_not("dead-end", &["groups.robot.count=7"]);
+    assert!(told.contains("no way for 7 robots") && told.contains("there is one for 5 of them"), "{told}");
+    assert!(told.contains("between `wall-"), "{told}");
+    let told =
+        why_not("maze-three", &["groups.robot.path.pose=[0, 0, 0]", "groups.robot.path.clearance=1.2"]);
+    assert!(told.contains("`robot-"), "{told}");
+}
+
+/// A room with a wall across it that nobody knows of.
+const CLOSED_ROOM: &str = r#"
+schema = 1
+[time]
+duration = 60.0
+[vehicle]
+acceleration_max = 3.0
+turn_rate_max = 3.0
+[law]
+heading = "path"
+standing = true
+[proximity]
+range = 6.0
+[safety]
+filter = true
+[narrowing]
+narrows = true
+[[groups]]
+name = "robot"
+shape = "v"
+count = 3
+distance = 1.2
+pose = [0, 0, 0]
+path = { kind = "goal", pose = [20, 0, 0], patience = 8 }
+[[props]]
+name = "wall-1"
+shape = "wall"
+from = [-6, 6]
+to = [26, 6]
+[[props]]
+name = "wall-2"
+shape = "wall"
+from = [-6, -6]
+to = [26, -6]
+[[props]]
+name = "wall-3"
+shape = "wall"
+from = [-6, -6]
+to = [-6, 6]
+[[props]]
+name = "wall-4"
+shape = "wall"
+from = [26, -6]
+to = [26, 6]
+[[props]]
+name = "surprise"
+shape = "wall"
+from = [12, -6]
+to = [12, 6]
+known = false
+"#;
+
+fn events(records: &[StepRecord], kind: EventKind) -> Vec<(f64, EventRecord)> {
+    let all =
+        records.iter().flat_map(|record| record.events.iter().map(|event| (record.snapshot.time, *event)));
+    all.filter(|(_, event)| event.kind == kind).collect()
+}
+
+#[test]
+fn what_nobody_knew_of_is_driven_around() {
+    for kind in ["unicycle", "car"] {
+        let records = run("moving-obstacle", &[&format!("vehicle.kind={kind}")]);
+        assert!(!records.iter().any(|record| record.contacts.iter().any(Contact::of_robot)), "{kind}");
+        let last = records.last().expect("a record");
+        assert!(away(last, [34.0, 0.0]) < 0.3, "{kind}: {} m away", away(last, [34.0, 0.0]));
+        let other_ways = events(&records, EventKind::Reroute);
+        assert!(!other_ways.is_empty(), "{kind}");
+        assert!(other_ways.iter().all(|(_, event)| matches!(event.obstacle, Some(EntityId::Prop(1 | 2)))));
+        assert_eq!(events(&records, EventKind::Arrive).len(), 1);
+        // Every new plan is told, the first at the start.
+        let plans = records.iter().map(|record| record.plans.len()).sum::<usize>();
+        assert_eq!(plans, 1 + other_ways.len());
+        assert_eq!(records[0].plans.len(), 1);
+    }
+}
+
+#[test]
+fn where_there_is_no_way_any_more_a_formation_stops_waits_and_gives_up() {
+    let scene = Scene::parse(CLOSED_ROOM, "test.toml", &[]).unwrap_or_else(|fault| panic!("{fault}")).scene;
+    let records = records_of(&scene);
+    assert!(!records.iter().any(|record| record.contacts.iter().any(Contact::of_robot)));
+    let (halts, gives_up) = (events(&records, EventKind::Halt), events(&records, EventKind::GiveUp));
+    assert_eq!((halts.len(), gives_up.len()), (1, 1), "{halts:?} {gives_up:?}");
+    let waited = gives_up[0].0 - halts[0].0;
+    assert!((8.0..10.5).contains(&waited), "{waited} s");
+    assert_eq!(halts[0].1.obstacle, Some(EntityId::Prop(4)));
+    let last = records.last().expect("a record");
+    assert!(last.snapshot.robots.iter().all(|robot| robot.motion.speed.abs() < 0.02));
+}
+
+#[test]
+fn who_has_lost_a_robot_plans_for_those_who_are_left() {
+    let fails = "events=[{ at = 12.0, robot = \"robot-2\", fails = \"stop\", recovery = \"graft\" }]";
+    let records = run("moving-obstacle", &[fails]);
+    let last = records.last().expect("a record");
+    assert!(away(last, [34.0, 0.0]) < 0.3, "{} m away", away(last, [34.0, 0.0]));
+    assert!(!records.iter().any(|record| record.contacts.iter().any(Contact::of_robot)));
+}
+
+#[test]
+fn the_formation_of_less_priority_yields() {
+    let records = run("two-formations", &[]);
+    assert!(!records.iter().any(|record| record.contacts.iter().any(Contact::of_robot)));
+    let at_rest = |lead: usize, [x, y]: [f64; 2]| {
+        records.iter().position(|record| {
+            let motion = record.snapshot.robots[lead].motion;
+            math::hypot(motion.pose.x - x, motion.pose.y - y) < 0.3 && motion.speed < 1e-3
+        })
+    };
+    let (first, second) = (at_rest(0, [12.0, 0.0]).expect("there"), at_rest(3, [0.0, 12.0]).expect("there"));
+    assert!(second > first + 100, "{second} {first}");
+    // The other way round.
+    let sets = ["groups.east.path.priority=0", "groups.north.path.priority=1"];
+    let turned = run("two-formations", &sets);
+    assert!(!turned.iter().any(|record| record.contacts.iter().any(Contact::of_robot)));
+    let first = turned[0].plans.first().and_then(|plan| plan.lead());
+    assert_eq!(first, Some(3));
 }

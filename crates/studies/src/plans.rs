@@ -9,8 +9,8 @@ use vocabulary::Pose;
 pub struct PlannedWay {
     /// Name of the lead robot.
     pub lead: String,
-    /// Number of the goal, from 1.
-    pub goal: usize,
+    /// Number of the goal, from 1; `None` where it only comes to a stand.
+    pub goal: Option<usize>,
     /// Names of the robots that it is planned for, the lead first.
     pub robots: Vec<String>,
     /// When the lead sets out, s.
@@ -51,10 +51,11 @@ pub struct PlannedRow {
 pub fn plans(run: &SceneRun) -> Vec<PlannedWay> {
     let names = &run.simulation.fleet().robots;
     let mut ways = vec![];
-    for (lead, motion) in run.simulation.planned() {
+    for (lead, motion) in run.simulation.goals().motions() {
         let robots: Vec<String> = motion.robots.iter().map(|robot| names[*robot].name.clone()).collect();
         let column = motion.levels.saturating_sub(1).max(1) as f64;
-        for (index, (begins, plan)) in motion.plans().enumerate() {
+        for part in motion.parts() {
+            let (begins, plan) = (part.begins, &part.plan);
             let row = |point: &simulation::PlanPoint| PlannedRow {
                 time: begins + point.time,
                 way: point.way,
@@ -65,8 +66,8 @@ pub fn plans(run: &SceneRun) -> Vec<PlannedWay> {
             };
             let rows: Vec<PlannedRow> = plan.points.iter().map(row).collect();
             ways.push(PlannedWay {
-                lead: names[*lead].name.clone(),
-                goal: index + 1,
+                lead: names[lead].name.clone(),
+                goal: part.goal.map(|goal| goal + 1),
                 robots: robots.clone(),
                 begins,
                 duration: plan.duration(),

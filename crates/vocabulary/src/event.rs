@@ -23,6 +23,12 @@ words! {
         Wait = "wait",
         /// It has waited in vain, or has been held up for too long, and stays where it is for good.
         GiveUp = "give_up",
+        /// It takes another way to its goal.
+        Reroute = "reroute",
+        /// It has no way to its goal: it stops, and waits for one.
+        Halt = "halt",
+        /// It is at a goal.
+        Arrive = "arrive",
         /// Its custom law gave a number that is not finite, or broke off: it brakes and stays where it is.
         LawFault = "law_fault",
     }
@@ -71,7 +77,7 @@ pub struct EventRecord {
     pub leader: Option<usize>,
     /// Why it did not happen; `Refusal::None` where it did.
     pub refusal: Refusal,
-    /// What stands in the way of a refused event, with [`Refusal::Hidden`].
+    /// What stands in the way of a refused event, with [`Refusal::Hidden`], or of a plan.
     pub obstacle: Option<EntityId>,
     /// What was measured, and the bound that it exceeds, m, rad or m/s; zero where a refusal is not about a number.
     pub measured: [f64; 2],
@@ -104,6 +110,9 @@ impl EventRecord {
                 EventKind::Coast => format!("{robot} fails and rolls to a stand"),
                 EventKind::Remove => format!("{robot} fails and is taken away"),
                 EventKind::Wait => format!("{robot} has lost its leader and waits"),
+                EventKind::Reroute => format!("{robot} takes another way{}", self.around(fleet)),
+                EventKind::Halt => format!("{robot} stops and looks for a way{}", self.around(fleet)),
+                EventKind::Arrive => format!("{robot} is at its goal"),
                 EventKind::LawFault => format!("{robot} brakes: its law gives no command"),
                 EventKind::GiveUp => format!("{robot} has waited in vain and stays where it is"),
             };
@@ -116,6 +125,11 @@ impl EventRecord {
             _ => format!("{robot} cannot fail"),
         };
         format!("{wanted}: {}", self.reason(fleet, leader))
+    }
+
+    /// What a way is planned around.
+    fn around(&self, fleet: &FleetInfo) -> String {
+        self.obstacle.map_or_else(String::new, |thing| format!(" around {}", fleet.name(thing)))
     }
 
     fn reason(&self, fleet: &FleetInfo, leader: &str) -> String {

@@ -113,6 +113,8 @@ pub struct FleetInfo {
     pub has_laws: bool,
     /// Whether robots may change leaders, fail or join while the run goes.
     pub has_events: bool,
+    /// Whether any lead robot has goals, to which ways are planned.
+    pub has_plans: bool,
     /// Solid things that are no robots, in the order of the snapshots.
     pub props: Vec<Prop>,
     /// The lie of the land; flat at z = 0 where there is none.

@@ -1,9 +1,10 @@
 //! One row of a run: the truth, and what every edge wanted, knew and did. Pictures and records are made of it.
 
 use crate::{
-    Command, Contact, Edge, EventRecord, FleetInfo, LawState, MeasurementRecord, MotionPhase, Relative,
-    SafetyState, Snapshot, TrackingState, nearest_turn, wrap,
+    Command, Contact, Edge, EventRecord, FleetInfo, LawState, MeasurementRecord, MotionPhase, PlannedPath,
+    Relative, SafetyState, Snapshot, TrackingState, nearest_turn, wrap,
 };
+use std::sync::Arc;
 
 /// One edge at an instant.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -65,6 +66,8 @@ pub struct StepRecord {
     pub leaders: Vec<Option<usize>>,
     /// What happened at this sample.
     pub events: Vec<EventRecord>,
+    /// Plans that hold from this sample on, each until its lead has another.
+    pub plans: Vec<Arc<PlannedPath>>,
 }
 
 impl StepRecord {
@@ -96,8 +99,9 @@ impl StepRecord {
         let turn = |p: f64, q: f64| wrap(mix(p, nearest_turn(q, p)));
         let mut out = a.clone();
         out.snapshot = Snapshot::between(&a.snapshot, &b.snapshot, share);
-        // Events belong to the moment at which they happen.
+        // Events and new plans belong to the moment at which they are made.
         out.events.clear();
+        out.plans.clear();
         for (k, (o, n)) in out.edges.iter_mut().zip(&b.edges).enumerate() {
             // Between two leaders there is no middle.
             if a.leaders.get(k) != b.leaders.get(k) {

@@ -38,6 +38,7 @@ fn changes_the_scene(action: &Action) -> bool {
             | Action::EditLaw(_)
             | Action::Set { .. }
             | Action::SetPoint { .. }
+            | Action::Goal { .. }
             | Action::Shape { .. }
             | Action::Connect { .. }
             | Action::Happen { .. }
@@ -107,6 +108,7 @@ impl AppState {
             Action::EditLaw(text) => self.edit_law(text),
             Action::Set { what, values } => self.set(what, values),
             Action::SetPoint { edge, distance, bearing } => self.move_set_point(*edge, [*distance, *bearing]),
+            Action::Goal { robot, number, place } => self.move_goal(*robot, *number, *place),
             Action::Shape { scale, turn } => self.reshape(*scale, *turn),
             Action::Connect { leader, follower, adds } => self.connect(*leader, *follower, *adds),
             Action::Happen { robot, what } => self.happen(*robot, *what),
@@ -219,6 +221,33 @@ impl AppState {
             moves.push((twin, [distance, -bearing]));
         }
         self.put_set_points(&format!("Set point of {name_and}…"), &moves);
+    }
+
+    /// Puts a goal of a lead robot elsewhere; its heading stays.
+    fn move_goal(&mut self, robot: usize, number: usize, [x, y]: [f64; 2]) {
+        let Some(scene) = self.scene().cloned() else { return };
+        let Some(member) = scene.robots.get(robot) else { return };
+        let written = |goal: &scene::Goal, [x, y]: [f64; 2]| {
+            let place = [x, y].map(toml_number).join(", ");
+            goal.heading.map_or_else(
+                || format!("[{place}]"),
+                |heading| format!("[{place}, {}]", toml_number(heading)),
+            )
+        };
+        let (key, value) = match &member.role {
+            Role::Lead { path: scene::Path::Goal { pose, .. } } => ("pose", written(pose, [x, y])),
+            Role::Lead { path: scene::Path::Tour { goals, .. } } => {
+                let goals = goals.iter().enumerate();
+                let all =
+                    goals.map(|(k, goal)| written(goal, if k == number { [x, y] } else { goal.position }));
+                ("goals", format!("[{}]", all.collect::<Vec<_>>().join(", ")))
+            }
+            _ => return,
+        };
+        self.set(
+            &format!("Goal of {}…", member.name),
+            &[(format!("robots.{}.path.{key}", member.name), value)],
+        );
     }
 
     fn put_set_points(&mut self, what: &str, moves: &[(usize, [f64; 2])]) {

@@ -7,7 +7,7 @@ use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use rendering::Style;
 
 /// Elements that can be switched, with their labels.
-const ELEMENTS: [(&str, &str); 12] = [
+const ELEMENTS: [(&str, &str); 13] = [
     ("ribbons", "Ribbons along driven paths"),
     ("ghosts", "Ghosts of past poses"),
     ("set-points", "Rings at set points"),
@@ -20,6 +20,7 @@ const ELEMENTS: [(&str, &str); 12] = [
     ("shadows", "Shadows"),
     ("barriers", "Barriers of safety filters"),
     ("events", "What happens to the formation"),
+    ("plans", "Ways to goals"),
 ];
 
 /// Films, pictures and their elements.

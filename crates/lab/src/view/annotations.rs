@@ -18,6 +18,8 @@ pub const ACCENT: [f32; 3] = [0.25, 0.62, 1.0];
 const REFUSED: [f32; 3] = [0.72, 0.10, 0.08];
 /// Radius of the ring at a set point for a robot of the default size, m.
 pub const RING: f64 = 0.25;
+/// Radius of the ring at a goal for a robot of the default size, m.
+pub const GOAL: f64 = 0.32;
 
 /// The state of the pointer, as far as it is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -26,6 +28,10 @@ pub struct PointerState {
     pub ring: Option<usize>,
     /// The edge whose set point is dragged.
     pub dragged: Option<usize>,
+    /// The goal under the pointer, by its lead robot and its number.
+    pub goal: Option<(usize, usize)>,
+    /// The goal that is dragged.
+    pub dragged_goal: Option<(usize, usize)>,
     /// The robot under the pointer.
     pub robot: Option<usize>,
     /// A connection being drawn: from a robot to a place, m.
@@ -155,6 +161,18 @@ fn handles(
             annotations.strokes.extend(reach(fleet, record, edge, 0.55));
         }
     }
+    for (robot, number, at) in goals(app_state) {
+        let colour = colours.get(robot).map_or(ACCENT, |colour| light(*colour));
+        let ring = Ring { least: 17.0, ..Ring::new(at, GOAL * size(fleet, robot), colour) };
+        let own = Some((robot, number));
+        annotations.rings.push(if pointer.dragged_goal == own {
+            ring.selected()
+        } else if pointer.goal == own {
+            ring.hovered()
+        } else {
+            ring
+        });
+    }
     let under = |robot: usize| {
         let pose = record.snapshot.robots.get(robot)?.motion.pose;
         let body = fleet.robots.get(robot)?.body;
@@ -167,6 +185,22 @@ fn handles(
     if let Some(robot) = pointer.robot {
         annotations.rings.extend(under(robot).map(|ring| Ring { alpha: 0.5, ..ring }));
     }
+}
+
+/// Goals of lead robots: robot, number and place, m.
+pub fn goals(app_state: &AppState) -> Vec<(usize, usize, [f64; 2])> {
+    let Some(scene) = app_state.scene() else { return vec![] };
+    let mut found = vec![];
+    for (robot, member) in scene.robots.iter().enumerate() {
+        let scene::Role::Lead { path } = &member.role else { continue };
+        let goals = match path {
+            scene::Path::Goal { pose, .. } => std::slice::from_ref(pose),
+            scene::Path::Tour { goals, .. } => goals,
+            _ => continue,
+        };
+        found.extend(goals.iter().enumerate().map(|(number, goal)| (robot, number, goal.position)));
+    }
+    found
 }
 
 /// All places that a set point of which a part is left free allows.

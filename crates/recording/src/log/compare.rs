@@ -7,7 +7,7 @@ use super::record::{self, FieldValue, Fields, Record};
 use super::safety::SafetyRecord;
 use crate::Error;
 use std::collections::BTreeMap;
-use vocabulary::{FleetInfo, StepRecord, wrap};
+use vocabulary::{FleetInfo, PlannedPath, StepRecord, wrap};
 
 /// One quantity of one robot or edge at one sample, as two logs have it.
 #[derive(Debug, Clone, PartialEq)]
@@ -127,6 +127,9 @@ fn bits(record: &mut StepRecord, out: &mut Vec<u8>) {
     }
     for event in &record.events {
         record::write(&mut EventMessage::new(event, &FleetInfo::default()), out);
+    }
+    for plan in &record.plans {
+        record::write(&mut PlannedPath::clone(plan), out);
     }
     for leader in &record.leaders {
         out.extend(leader.map_or(u64::MAX, |leader| leader as u64).to_le_bytes());
@@ -254,6 +257,10 @@ fn quantities(record: &StepRecord, fleet: &FleetInfo) -> Vec<ComparedQuantity> {
     }
     for event in &record.events {
         all.collect(7, "what happened".to_owned(), &mut EventMessage::new(event, fleet));
+    }
+    for plan in &record.plans {
+        let of = format!("plan of {}", plan.lead().map_or("", name));
+        all.collect(9, of, &mut PlannedPath::clone(plan));
     }
     all.found
 }

@@ -34,6 +34,7 @@ impl Record for FleetInfo {
             .collect();
         f.each("free", &mut free)?;
         self.free = free.into_iter().map(|free| [free.distance, free.bearing]).collect();
+        f.flag("has_plans", &mut self.has_plans)?;
         Some(())
     }
 }

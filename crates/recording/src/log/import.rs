@@ -19,9 +19,10 @@ use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
 use std::path::Path;
+use std::sync::Arc;
 use vocabulary::{
-    Contact, EdgeState, EventRecord, FleetInfo, LawState, MeasurementRecord, Placement, RobotState,
-    SafetyState, StepRecord, counted,
+    Contact, EdgeState, EventRecord, FleetInfo, LawState, MeasurementRecord, Placement, PlannedPath,
+    RobotState, SafetyState, StepRecord, counted,
 };
 
 /// A log of ours, and what the foreign one has and lacks.
@@ -237,6 +238,7 @@ struct Parts {
     safety: BTreeMap<usize, SafetyState>,
     laws: BTreeMap<usize, LawState>,
     events: Vec<EventRecord>,
+    plans: Vec<Arc<PlannedPath>>,
     sample: Option<SampleNumber>,
 }
 
@@ -263,6 +265,7 @@ impl Pending {
                     drop(parts.laws.insert(robot, LawState { robot, ..record::read(data)? }));
                 }
                 LogChannel::Event => parts.events.push(record::read::<EventMessage>(data)?.event),
+                LogChannel::Plan => parts.plans.push(Arc::new(record::read(data)?)),
                 LogChannel::Contact => {
                     parts.contacts.push(record::read::<ContactRecord>(data)?.contact);
                 }
@@ -289,7 +292,8 @@ impl Parts {
         let (robots, edges) = (self.robots.len(), self.edges.len());
         let (contacts, frames) = (self.contacts.len(), self.frames.len());
         let found = [robots, edges, placed.len(), contacts, frames, self.safety.len(), self.events.len()];
-        (sample.counts == found && sample.laws == self.laws.len()).then_some(())?;
+        let more = [self.laws.len(), self.plans.len()];
+        (sample.counts == found && [sample.laws, sample.plans] == more).then_some(())?;
         let inside = |last: Option<&usize>, count: usize| last.is_none_or(|last| *last < count);
         let fits = inside(self.robots.keys().next_back(), fleet.robots.len())
             && inside(self.edges.keys().next_back(), fleet.edges.len())
@@ -305,6 +309,7 @@ impl Parts {
         record.safety = self.safety.into_values().collect();
         record.laws = self.laws.into_values().collect();
         (record.leaders, record.events) = (sample.leaders, self.events);
+        record.plans = self.plans;
         fits.then_some(record)
     }
 }

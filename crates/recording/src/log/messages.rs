@@ -159,6 +159,8 @@ pub(super) struct SampleNumber {
     pub(super) counts: [usize; 7],
     /// Of custom laws.
     pub(super) laws: usize,
+    /// Of plans.
+    pub(super) plans: usize,
     /// Whom the follower of each edge follows; `None` where it follows nobody. Empty where that never changes.
     pub(super) leaders: Vec<Option<usize>>,
 }
@@ -177,6 +179,7 @@ impl Record for SampleNumber {
         let whole = |x: f64| x.fract() == 0.0 && (-1.0..1e9).contains(&x);
         leaders.iter().all(|x| whole(*x)).then_some(())?;
         self.leaders = leaders.iter().map(|x| (*x >= 0.0).then_some(*x as usize)).collect();
-        f.count("laws", &mut self.laws)
+        f.count("laws", &mut self.laws)?;
+        f.count("plans", &mut self.plans)
     }
 }

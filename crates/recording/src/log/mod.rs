@@ -24,6 +24,7 @@ mod messages;
 mod outline;
 mod pictures;
 mod pipe;
+mod plans;
 mod read;
 mod record;
 mod ros;
@@ -65,6 +66,7 @@ impl Topics {
     const FLEET: &str = "/fleet";
     const CONTACTS: &str = "/contacts";
     const EVENTS: &str = "/events";
+    const PLANS: &str = "/plans";
     const SAMPLES: &str = "/samples";
 
     fn robot(member: &RobotInfo) -> String {

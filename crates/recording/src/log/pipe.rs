@@ -114,7 +114,7 @@ impl Pipe {
 /// Copies into memory that is there.
 fn copy(to: &mut StepRecord, from: &StepRecord) {
     // What is added to a moment has to be copied: it does not compile without.
-    let StepRecord { snapshot, edges, contacts, frames, safety, laws, leaders, events } = from;
+    let StepRecord { snapshot, edges, contacts, frames, safety, laws, leaders, events, plans } = from;
     to.snapshot.time = snapshot.time;
     to.snapshot.robots.clone_from(&snapshot.robots);
     to.snapshot.props.clone_from(&snapshot.props);
@@ -125,4 +125,5 @@ fn copy(to: &mut StepRecord, from: &StepRecord) {
     to.laws.clone_from(laws);
     to.leaders.clone_from(leaders);
     to.events.clone_from(events);
+    to.plans.clone_from(plans);
 }

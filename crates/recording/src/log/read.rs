@@ -18,7 +18,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use vocabulary::{
-    EdgeState, FleetInfo, LawState, MeasurementRecord, Placement, RobotState, SafetyState, StepRecord,
+    EdgeState, FleetInfo, LawState, MeasurementRecord, Placement, PlannedPath, RobotState, SafetyState,
+    StepRecord,
 };
 
 /// A recorded run. A copy shares everything with the original.
@@ -51,6 +52,7 @@ pub(super) enum LogChannel {
     Safety(usize),
     Law(usize),
     Event,
+    Plan,
     Contact,
     Sample,
     FleetInfo,
@@ -266,6 +268,7 @@ impl LogChannel {
             SafetyRecord::NAME => Some(Self::Safety(index)),
             LawState::NAME => Some(Self::Law(index)),
             EventMessage::NAME => Some(Self::Event),
+            PlannedPath::NAME => Some(Self::Plan),
             ContactRecord::NAME => Some(Self::Contact),
             SampleNumber::NAME => Some(Self::Sample),
             FleetInfo::NAME => Some(Self::FleetInfo),
@@ -363,6 +366,7 @@ fn take(
         LogChannel::Safety(index) => record.safety.push(safety_of(index, data)?),
         LogChannel::Law(robot) => record.laws.push(LawState { robot, ..record::read(data)? }),
         LogChannel::Event => record.events.push(record::read::<EventMessage>(data)?.event),
+        LogChannel::Plan => record.plans.push(Arc::new(record::read(data)?)),
         LogChannel::Contact => record.contacts.push(record::read::<ContactRecord>(data)?.contact),
         LogChannel::Sample => {
             let sample: SampleNumber = record::read(data)?;
@@ -371,7 +375,8 @@ fn take(
             let (contacts, frames) = (record.contacts.len(), record.frames.len());
             let found =
                 [robots, edges, props.len(), contacts, frames, record.safety.len(), record.events.len()];
-            (sample.counts == found && sample.laws == record.laws.len()).then_some(())?;
+            let more = [record.laws.len(), record.plans.len()];
+            (sample.counts == found && [sample.laws, sample.plans] == more).then_some(())?;
             record.leaders = sample.leaders;
             return Some(true);
         }

@@ -15,7 +15,9 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
-use vocabulary::{EdgeState, FleetInfo, LawState, MeasurementRecord, Placement, RobotState, StepRecord};
+use vocabulary::{
+    EdgeState, FleetInfo, LawState, MeasurementRecord, Placement, PlannedPath, RobotState, StepRecord,
+};
 
 /// Where a message goes: its channel, which sample it belongs to and when that was.
 #[derive(Clone, Copy, Default)]
@@ -107,6 +109,7 @@ pub(super) struct Writer {
     safety: Vec<u16>,
     laws: Vec<u16>,
     events: Option<u16>,
+    plans: Option<u16>,
     contacts: u16,
     samples: u16,
     number: u64,
@@ -155,6 +158,7 @@ impl Writer {
             safety: vec![],
             laws: vec![],
             events: None,
+            plans: None,
             contacts: to.add_own::<ContactRecord>(Topics::CONTACTS, 0)?,
             samples: to.add_own::<SampleNumber>(Topics::SAMPLES, 0)?,
             number: 0,
@@ -180,6 +184,9 @@ impl Writer {
         }
         if fleet.has_events {
             self.events = Some(to.add_own::<EventMessage>(Topics::EVENTS, 0)?);
+        }
+        if fleet.has_plans {
+            self.plans = Some(to.add_own::<PlannedPath>(Topics::PLANS, 0)?);
         }
         for (index, edge) in fleet.edges.iter().enumerate() {
             self.edges.push(to.add_own::<EdgeState>(&Topics::edge(fleet, *edge), index)?);
@@ -260,11 +267,24 @@ impl Writer {
                 happened += 1;
             }
         }
-        let StepRecord { snapshot, edges, contacts, frames, safety: _, laws: _, leaders, events: _ } = record;
+        let mut planned = 0;
+        if let Some(channel) = self.plans {
+            for plan in &record.plans {
+                to.put_own(channel, stamp, &mut PlannedPath::clone(plan))?;
+                planned += 1;
+            }
+        }
+        let StepRecord { snapshot, edges, contacts, frames, leaders, .. } = record;
         let (robots, props) = (snapshot.robots.len(), snapshot.props.len());
         let counts = [robots, edges.len(), props, contacts.len(), frames.len(), filters, happened];
-        let mut sample =
-            SampleNumber { number: self.number, time: snapshot.time, counts, laws, leaders: leaders.clone() };
+        let mut sample = SampleNumber {
+            number: self.number,
+            time: snapshot.time,
+            counts,
+            laws,
+            plans: planned,
+            leaders: leaders.clone(),
+        };
         self.number += 1;
         to.put_own(self.samples, stamp, &mut sample)
     }

@@ -6,4 +6,5 @@ pub(crate) mod events;
 pub(crate) mod inset;
 pub(crate) mod labels;
 pub(crate) mod overlays;
+pub(crate) mod plans;
 pub(crate) mod text_shaper;

@@ -1,10 +1,10 @@
 //! The past of a run in bounded memory: ribbons, ghosts, errors over time, and the smoothed camera.
 
 use crate::camera::smoothing::SmoothedFormation;
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 use vocabulary::math;
-use vocabulary::{Contact, EventRecord, FleetInfo, MeasurementRecord, Pose, StepRecord, wrap};
+use vocabulary::{Contact, EventRecord, FleetInfo, MeasurementRecord, PlannedPath, Pose, StepRecord, wrap};
 
 /// How long a ribbon is, s.
 pub(crate) const RIBBON: f64 = 12.0;
@@ -34,6 +34,8 @@ pub struct Trail {
     pub(crate) touches: VecDeque<Contact>,
     /// What happened to the formation, and when in s, old to new.
     pub(crate) events: VecDeque<(f64, EventRecord)>,
+    /// The plans that hold, by their leads.
+    pub(crate) plans: BTreeMap<usize, Arc<PlannedPath>>,
     /// Contacts up to this number are known or forgotten.
     forgotten: Option<u64>,
     /// Of the moment before, and how each robot has slid since the last mark.
@@ -73,6 +75,7 @@ impl Trail {
             marks: Thinning::new(),
             touches: VecDeque::new(),
             events: VecDeque::new(),
+            plans: BTreeMap::new(),
             forgotten: None,
             before: Vec::new(),
             slides: Vec::new(),
@@ -107,6 +110,12 @@ impl Trail {
             if self.events.len() > EVENTS {
                 self.events.pop_front();
             }
+        }
+        for plan in &record.plans {
+            let Some(lead) = plan.lead() else { continue };
+            // Another may lead in the place of one that has failed.
+            self.plans.retain(|_, known| !known.robots.contains(&lead));
+            self.plans.insert(lead, plan.clone());
         }
         for frame in &record.frames {
             if let Some(last) = self.measurements.get_mut(frame.edge) {

@@ -109,6 +109,10 @@ pub struct Travel {
     pub acceleration: f64,
     /// How far all robots stay off what is known to stand there, m.
     pub clearance: f64,
+    /// Of several formations those of higher priority plan first.
+    pub priority: u32,
+    /// How long it waits for a way that is not there, s.
+    pub patience: f64,
 }
 
 /// Speed along a curve.

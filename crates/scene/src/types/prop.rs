@@ -21,6 +21,8 @@ pub struct PropSpec {
     pub friction: f64,
     /// Share of the speed of an impact that it is thrown back with, 0 to 1.
     pub restitution: f64,
+    /// Whether plans know of it from the start; otherwise proximity sensors find it.
+    pub known: bool,
     /// Whether it can move.
     #[serde(flatten)]
     pub motion: PropMotion,

@@ -220,7 +220,7 @@ pub(super) fn lead(run: &mut Simulation, robot: usize, motion: Arc<dyn Trajector
 }
 
 /// A robot has no least speed from now on: it stops where its motion does.
-pub(super) fn let_stand(run: &mut Simulation, robot: usize) {
+pub(crate) fn let_stand(run: &mut Simulation, robot: usize) {
     run.events.may_stand[robot] = true;
     let limits = Limits { speed_min: 0.0, ..*run.formation.limits(robot) };
     run.formation.set_limits(robot, limits);

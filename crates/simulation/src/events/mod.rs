@@ -18,6 +18,7 @@ use std::sync::Arc;
 use vocabulary::{Command, EventKind, EventRecord, Limits, Motion, Trajectory};
 
 pub use failure::Recovery;
+pub(crate) use hand_over::let_stand;
 pub(crate) use plan::event_plan;
 pub use trigger::{Holds, Trigger};
 
@@ -174,7 +175,7 @@ impl Events {
     }
 
     /// Notes what happened at this sample; what is known already is not said again.
-    fn tell(&mut self, event: EventRecord) {
+    pub(crate) fn tell(&mut self, event: EventRecord) {
         let event = EventRecord { event: event.event.or(self.current), ..event };
         if !self.told.contains(&event) {
             self.told.push(event);

@@ -4,6 +4,7 @@ use super::Viewport;
 use crate::action::Action;
 use crate::app_state::{AppState, Selection, Tool};
 use crate::numbers::snap;
+use crate::view::annotations::goals;
 use crate::view::camera::CameraControl;
 use eframe::egui::{self, Pos2, Rect, Ui, Vec2};
 use rendering::{Picked, Sightline, set_points};
@@ -20,6 +21,8 @@ pub(super) enum Drag {
     Orbit,
     Pan,
     SetPoint(usize),
+    /// By lead robot and number.
+    Goal(usize, usize),
     Connect(usize),
 }
 
@@ -85,6 +88,11 @@ impl Viewport {
                         out.extend(dragged(&frame, edge, place));
                     }
                 }
+                Drag::Goal(robot, number) => {
+                    if let Some(place) = sight.ground(pixel(pos)) {
+                        out.extend(moved(&frame, (robot, number), place));
+                    }
+                }
                 Drag::Connect(robot) => {
                     self.pointer.connecting = sight.ground(pixel(pos)).map(|place| (robot, place));
                 }
@@ -126,6 +134,17 @@ impl Viewport {
         if app_state.tool == Tool::Select {
             self.pointer.ring = near.min_by(|a, b| first(a).total_cmp(&first(b))).map(|(_, edge)| edge);
         }
+        self.pointer.goal = None;
+        if app_state.tool == Tool::Select && self.pointer.ring.is_none() {
+            let near = goals(app_state).into_iter().filter_map(|(robot, number, at)| {
+                let [x, y] = sight.pixel_of_ground(at)?;
+                let away = math::hypot(x - pixel[0], y - pixel[1]);
+                let radius =
+                    crate::view::annotations::GOAL / sight.metres_per_pixel([at[0], at[1], 0.0]).max(1e-9);
+                (away < grasp.max(0.8 * radius)).then_some((away, (robot, number)))
+            });
+            self.pointer.goal = near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, goal)| goal);
+        }
         let robot =
             view_renderer.renderer.pick(sight, record, pixel).into_iter().find_map(|picked| match picked {
                 Picked::Robot(robot) => Some(robot),
@@ -139,15 +158,22 @@ impl Viewport {
             let pointer = &input.pointer;
             (pointer.secondary_down() || pointer.middle_down(), input.modifiers.shift)
         });
+        let goal = self.pointer.goal;
         self.drag = Some(match (right, app_state.tool, self.pointer.robot, self.pointer.ring) {
             (true, ..) => Drag::Pan,
             (_, Tool::Connect, Some(robot), _) => Drag::Connect(robot),
             (_, Tool::Select, _, Some(edge)) => Drag::SetPoint(edge),
-            _ if shift => Drag::Pan,
-            _ => Drag::Orbit,
+            _ => match goal {
+                Some((robot, number)) if app_state.tool == Tool::Select => Drag::Goal(robot, number),
+                _ if shift => Drag::Pan,
+                _ => Drag::Orbit,
+            },
         });
         if let Some(Drag::SetPoint(edge)) = self.drag {
             self.pointer.dragged = Some(edge);
+        }
+        if let Some(Drag::Goal(robot, number)) = self.drag {
+            self.pointer.dragged_goal = Some((robot, number));
         }
     }
 
@@ -157,6 +183,7 @@ impl Viewport {
                 out.push(Action::Release);
                 out.push(Action::Select(Selection::Edge(edge)));
             }
+            Some(Drag::Goal(..)) => out.push(Action::Release),
             Some(Drag::Connect(follower)) => {
                 if let Some(leader) = self.pointer.robot.filter(|leader| *leader != follower) {
                     let adds = ui.input(|input| input.modifiers.shift);
@@ -166,6 +193,7 @@ impl Viewport {
             _ => {}
         }
         self.pointer.dragged = None;
+        self.pointer.dragged_goal = None;
         self.pointer.connecting = None;
     }
 
@@ -232,6 +260,16 @@ fn released_at(ui: &Ui) -> Option<Pos2> {
             _ => None,
         })
     })
+}
+
+/// The action of a goal that is dragged to a place.
+fn moved(frame: &PointerFrame<'_>, (robot, number): (usize, usize), place: [f64; 2]) -> Option<Action> {
+    let free = frame.ui.input(|input| input.modifiers.shift);
+    let place = if free { place } else { place.map(|x| snap(x, STEPS[0])) };
+    let all = goals(frame.app_state);
+    let (.., now) = all.into_iter().find(|(own, own_number, _)| (*own, *own_number) == (robot, number))?;
+    let away = math::hypot(place[0] - now[0], place[1] - now[1]);
+    (away > 1e-9).then_some(Action::Goal { robot, number, place })
 }
 
 /// The action of a set point that is dragged to a place.

@@ -6,6 +6,7 @@ pub(crate) mod contacts;
 pub(crate) mod shadows;
 
 use crate::Viewpoint;
+use crate::annotation::plans::plans;
 use crate::camera::Camera;
 use crate::gpu::passes::decal::{DecalForm, DecalLayer, DecalVertex};
 use crate::ground::floor::Floor;
@@ -86,7 +87,12 @@ pub(crate) fn build_decals(
         over.append(&mut flashes.corners);
     }
     let lines = painted(&|builder| builder.lines(context, view));
-    let annotations = painted(&|builder| builder.annotations(&style.annotations, context.size));
+    let annotations = painted(&|builder| {
+        if style.plans {
+            builder.annotations(&plans(context), context.size);
+        }
+        builder.annotations(&style.annotations, context.size);
+    });
     [
         (DecalLayer::Paint, lines),
         (DecalLayer::Annotations, annotations),

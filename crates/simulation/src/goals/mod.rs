@@ -1,0 +1,174 @@
+//! Lead robots that have goals: the way of each is planned for all robots that follow it, before the run begins, and again
+//! where something is found in the way.
+//!
+//! ```text
+//! convoy          a lead and its followers, as planning sees them
+//! surroundings    what stands and moves around them
+//! navigator       one lead: its goals, its plan, what it is up to
+//! motion          the plan as a motion
+//! replan          what is found on the way, and what is done about it
+//! reasons         why there is no way, in the names of the scene
+//! ```
+
+mod convoy;
+mod motion;
+mod navigator;
+mod reasons;
+mod replan;
+mod surroundings;
+
+pub use motion::{PlannedMotion, PlannedPart};
+pub use navigator::Wish;
+pub(crate) use replan::navigate;
+
+use crate::error::BuildError;
+use convoy::Convoy;
+use formation::{EdgeLaw, Graph};
+use navigator::{Departure, Navigator, Phase, Task};
+use planning::{PlanGoal, PlanStart};
+use reasons::Names;
+use scene::{Path, Robot, Role, Scene, Vehicle};
+use std::sync::Arc;
+use surroundings::Surroundings;
+use vocabulary::{EntityId, PlannedPath};
+
+/// All lead robots of a run that have goals.
+#[derive(Debug, Clone, Default)]
+pub struct Goals {
+    navigators: Vec<Navigator>,
+    surroundings: Arc<Surroundings>,
+    vehicles: Arc<Vec<Vehicle>>,
+    /// When it is time to look round again, s.
+    looks: f64,
+    /// Plans that no record has yet.
+    pub(crate) told: Vec<Arc<PlannedPath>>,
+}
+
+impl Goals {
+    /// Whether no robot has goals.
+    pub fn is_empty(&self) -> bool {
+        self.navigators.is_empty()
+    }
+
+    /// The motions of all lead robots that have goals, by their numbers, in the order in which they were planned: who comes later
+    /// yields to those before.
+    pub fn motions(&self) -> impl Iterator<Item = (usize, &Arc<PlannedMotion>)> {
+        self.navigators.iter().map(|navigator| (navigator.lead, &navigator.motion))
+    }
+
+    /// What all of them want.
+    pub(crate) fn wishes(&self) -> Vec<(usize, Arc<Wish>)> {
+        self.navigators.iter().map(|navigator| (navigator.lead, navigator.wish.clone())).collect()
+    }
+
+    /// They want something else from now on, and look for a way at the next sample.
+    pub(crate) fn adopt(&mut self, wishes: &[(usize, Arc<Wish>)]) {
+        for (lead, wish) in wishes {
+            let Some(navigator) = self.navigators.iter_mut().find(|own| own.asked == *lead) else { continue };
+            if navigator.wish != *wish {
+                navigator.wants(wish.clone());
+                self.looks = 0.0;
+            }
+        }
+    }
+
+    /// The motion of a lead robot, if it has goals.
+    pub fn motion_of(&self, robot: usize) -> Option<&Arc<PlannedMotion>> {
+        self.motions().find(|(lead, _)| *lead == robot).map(|(_, motion)| motion)
+    }
+}
+
+/// Plans for all lead robots that have goals.
+///
+/// # Errors
+/// There is no way to a goal: with the reason, and with what there is a way for.
+pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Goals, BuildError> {
+    let mut asked: Vec<(usize, Wish)> = scene
+        .robots
+        .iter()
+        .enumerate()
+        .filter_map(|(lead, robot)| {
+            let Role::Lead { path } = &robot.role else { return None };
+            Some((lead, wish(path)?))
+        })
+        .collect();
+    if asked.is_empty() {
+        return Ok(Goals::default());
+    }
+    // Of the same priority those come first that the scene names first.
+    asked.sort_by_key(|(lead, wish)| (std::cmp::Reverse(wish.travel.priority), *lead));
+    let robot_of = |lead: usize| scene.robots[lead].name.clone();
+    let invalid = |lead: usize, error: &planning::InputError| BuildError::Plan {
+        robot: robot_of(lead),
+        why: error.to_string(),
+    };
+    let surroundings = Surroundings::of(scene).map_err(|error| invalid(asked[0].0, &error))?;
+    let vehicles: Vec<Vehicle> = scene.robots.iter().map(|robot| robot.vehicle.clone()).collect();
+    let standing = surroundings.standing_at_first();
+    let mut moving = surroundings.moving(|index| surroundings.things[index].known);
+    let mut navigators: Vec<Navigator> = vec![];
+    for (lead, wish) in asked {
+        let convoy = Convoy::of(graph, laws, lead, 0.0);
+        let model = convoy.model(&vehicles).map_err(|error| invalid(lead, &error))?;
+        let limits = convoy.limits(&vehicles, &wish.travel);
+        let task = Task { model: &model, limits, standing: &standing, moving: &moving };
+        let departure = Departure { start: PlanStart::at(scene.robots[lead].pose), held: None, time: 0.0 };
+        let parts = wish.parts(&task, &departure, 0, wish.travel.clearance).map_err(|(goal, error)| {
+            let name = |whose: EntityId| match whose {
+                EntityId::Robot(index) => robot_of(index),
+                EntityId::Prop(index) => scene.props[index].name.clone(),
+                EntityId::Ground => "the ground".to_owned(),
+            };
+            let moving: Vec<EntityId> = moving.iter().map(|(whose, _)| *whose).collect();
+            let names = Names { name: &name, robots: &convoy.robots, standing: &standing, moving: &moving };
+            let at = if wish.goals.len() > 1 { format!("to goal {}: ", goal + 1) } else { String::new() };
+            BuildError::Plan { robot: robot_of(lead), why: format!("{at}{}", names.why(&error)) }
+        })?;
+        let navigator = Navigator {
+            lead,
+            asked: lead,
+            wish: Arc::new(wish),
+            motion: Arc::new(PlannedMotion { parts, robots: convoy.robots, levels: model.levels() }),
+            phase: Phase::Drives,
+            knows: surroundings.things.iter().map(|thing| thing.known).collect(),
+            places: surroundings.things.iter().map(|thing| thing.pose).collect(),
+            replans: false,
+            reached: 0,
+            since: 0,
+        };
+        moving.extend(navigator.tracks(&vehicles));
+        navigators.push(navigator);
+    }
+    let told = navigators.iter().map(|navigator| Arc::new(navigator.motion.path(0.0))).collect();
+    Ok(Goals {
+        version: 0,
+        told,
+        navigators,
+        surroundings: Arc::new(surroundings),
+        vehicles: Arc::new(vehicles),
+        looks: 0.0,
+    })
+}
+
+/// What lead robots with goals want, by their numbers.
+pub(crate) fn wishes(robots: &[Robot]) -> Vec<(usize, Arc<Wish>)> {
+    let of = |(lead, robot): (usize, &Robot)| match &robot.role {
+        Role::Lead { path } => Some((lead, Arc::new(wish(path)?))),
+        Role::Follow(_) => None,
+    };
+    robots.iter().enumerate().filter_map(of).collect()
+}
+
+/// What a path asks for; `None` where it says how to go instead of where.
+fn wish(path: &Path) -> Option<Wish> {
+    let (goals, pause, rounds, travel) = match path {
+        Path::Goal { pose, travel } => (std::slice::from_ref(pose), 0.0, 1, travel),
+        Path::Tour { goals, pause, rounds, travel } => (goals.as_slice(), *pause, *rounds, travel),
+        _ => return None,
+    };
+    let goals = (0..rounds)
+        .flat_map(|_| goals)
+        .map(|goal| PlanGoal { heading: goal.heading, ..PlanGoal::to(goal.position) })
+        .collect();
+    Some(Wish { goals, pause, travel: *travel })
+}

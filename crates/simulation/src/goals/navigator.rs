@@ -1,0 +1,159 @@
+//! One lead robot with goals: what it wants, its plan, and what it is up to.
+
+use super::convoy::shape;
+use super::motion::{PlannedMotion, PlannedPart};
+use super::surroundings::map;
+use planning::{
+    Convex, FormationModel, InputError, Map, Mission, MovingThing, PlanError, PlanGoal, PlanRequest,
+    PlanStart, TrackPoint, TravelLimits, plan_among,
+};
+use scene::{Travel, Vehicle};
+use std::sync::Arc;
+use vocabulary::{EntityId, Pose};
+
+/// A lead robot that has goals.
+#[derive(Debug, Clone)]
+pub(crate) struct Navigator {
+    /// Its number.
+    pub(super) lead: usize,
+    /// Number of the robot whose goals they were at first: another leads in its place where that has failed.
+    pub(super) asked: usize,
+    pub(super) wish: Arc<Wish>,
+    /// How it gets there.
+    pub(super) motion: Arc<PlannedMotion>,
+    pub(super) phase: Phase,
+    /// Whether its plans know of each prop.
+    pub(super) knows: Vec<bool>,
+    /// Where each prop was seen last.
+    pub(super) places: Vec<Pose>,
+    /// Whether it is to plan again, since its goals are others.
+    pub(super) replans: bool,
+    /// Number of the plans of all that it has been held against.
+    pub(super) version: u64,
+    /// How many of its goals it has reached.
+    pub(super) reached: usize,
+    /// Parts of its motion before this one lead to goals that it wanted before; `usize::MAX` until it has a plan for what it
+    /// wants now.
+    pub(super) since: usize,
+}
+
+/// Where a lead robot wants to go, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wish {
+    /// All of its goals, those of a tour once a round.
+    pub goals: Vec<PlanGoal>,
+    /// How long it stays at each, s.
+    pub pause: f64,
+    /// How it goes there.
+    pub travel: Travel,
+}
+
+/// What a lead robot is up to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Phase {
+    /// It drives by its plan, or has arrived.
+    Drives,
+    /// It stands, or comes to a stand, and there is no way.
+    Waits {
+        /// Since when, s.
+        since: f64,
+        /// When it looked for a way last, s.
+        tried: f64,
+    },
+    /// It stays where it is for good.
+    Stays,
+}
+
+/// A convoy and what is known of its surroundings: what a plan is made of.
+pub(super) struct Task<'a> {
+    pub(super) model: &'a FormationModel,
+    pub(super) limits: TravelLimits,
+    pub(super) standing: &'a [(EntityId, Convex)],
+    pub(super) moving: &'a [(EntityId, MovingThing)],
+}
+
+/// Where and how a convoy is when it begins to plan.
+pub(super) struct Departure {
+    pub(super) start: PlanStart,
+    /// θ̄ and κ̄ of its followers, if they are known.
+    pub(super) held: Option<Vec<[f64; 2]>>,
+    /// s.
+    pub(super) time: f64,
+}
+
+impl Wish {
+    /// Plans to all goals from number `next` on.
+    ///
+    /// # Errors
+    /// The number of the goal that there is no way to, and why.
+    pub(super) fn parts(
+        &self,
+        task: &Task<'_>,
+        departure: &Departure,
+        next: usize,
+        clearance: f64,
+    ) -> Result<Vec<PlannedPart>, (usize, PlanError)> {
+        let failed = |error: InputError| (next, PlanError::from(error));
+        let map = self.map(task, departure, clearance).map_err(failed)?;
+        let things: Vec<MovingThing> = task.moving.iter().map(|(_, thing)| thing.clone()).collect();
+        let (mut start, mut held, mut time) = (departure.start, departure.held.clone(), departure.time);
+        let mut parts: Vec<PlannedPart> = vec![];
+        for (number, goal) in self.goals.iter().enumerate().skip(next) {
+            let mission = Mission { start, goal: *goal };
+            let request = PlanRequest {
+                held: held.as_deref(),
+                ..PlanRequest::new(&map, task.model, task.limits, mission)
+            };
+            let plan =
+                plan_among(&request, &things, time, &mut |_| false).map_err(|error| (number, error))?;
+            if let Some(end) = plan.points.last() {
+                start = PlanStart { level: end.level, curvature: end.curvature, ..PlanStart::at(end.pose) };
+            }
+            held = Some(plan.held.clone());
+            let begins = time;
+            time += plan.duration() + self.pause;
+            parts.push(PlannedPart { begins, goal: Some(number), until: f64::INFINITY, plan });
+        }
+        Ok(parts)
+    }
+
+    fn map(&self, task: &Task<'_>, departure: &Departure, clearance: f64) -> Result<Map, InputError> {
+        let start = departure.start.pose;
+        let places = [[start.x, start.y]].into_iter().chain(self.goals.iter().map(|goal| goal.position));
+        map(task.standing, places, task.model, clearance)
+    }
+}
+
+impl Navigator {
+    /// It wants something else from now on.
+    pub(super) fn wants(&mut self, wish: Arc<Wish>) {
+        // A tour of as many goals goes on where it was.
+        let kept = self.wish.goals.len() == wish.goals.len() && wish.goals.len() > 1;
+        self.reached = if kept { self.reached.min(wish.goals.len() - 1) } else { 0 };
+        (self.wish, self.replans, self.phase) = (wish, true, Phase::Drives);
+        self.since = usize::MAX;
+    }
+
+    /// The bodies of its robots on their ways, for those who yield to it.
+    pub(super) fn tracks(&self, vehicles: &[Vehicle]) -> Vec<(EntityId, MovingThing)> {
+        let robots = self.motion.robots.iter().enumerate();
+        robots
+            .filter_map(|(k, robot)| Some((EntityId::Robot(*robot), self.track(k, &vehicles[*robot])?)))
+            .collect()
+    }
+
+    fn track(&self, k: usize, vehicle: &Vehicle) -> Option<MovingThing> {
+        let mut track: Vec<TrackPoint> = vec![];
+        for part in self.motion.parts() {
+            for point in &part.plan.points {
+                let time = part.begins + point.time;
+                // Of a plan for others this robot is no part.
+                let Some(pose) = point.robots.get(k) else { continue };
+                if time < part.until && track.last().is_none_or(|last| last.time < time) {
+                    track.push(TrackPoint { time, pose: *pose });
+                }
+            }
+        }
+        MovingThing::new(shape(vehicle).at(Pose::default()), track).ok()
+    }
+}
