@@ -1,5 +1,5 @@
 //! Plans for a single car on one of the trial's maps and prints the map with the plan as JSON, for `tests/planners`, where other
-//! planners get the same map. `cargo run --release --locked -p planning --example car OBSTACLES SEED`
+//! planners get the same map. `cargo run --release --locked -p planning --example car OBSTACLES SEED [forwards]`
 
 use planning::{
     BodyShape, Convex, FormationModel, MotionPlan, PlanGoal, PlanRequest, TravelLimits, plan, trial,
@@ -42,12 +42,8 @@ fn pose(pose: &Pose) -> String {
 /// Where the plan goes, and how.
 fn found(plan: &MotionPlan) -> String {
     let poses = lists(&plan.points, |point| pose(&point.pose));
-    let cusps = plan.legs.len() - 1;
-    format!(
-        "{{\"length\":{},\"cusps\":{cusps},\"smoothed\":{},\"poses\":{poses}}}",
-        plan.length(),
-        plan.smoothed
-    )
+    let backwards = lists(&plan.legs, |leg| leg.backwards.to_string());
+    format!("{{\"duration\":{},\"backwards\":{backwards},\"poses\":{poses}}}", plan.duration())
 }
 
 /// The plan, if there is one, and how long it took, s.
@@ -60,14 +56,15 @@ fn timed(request: &PlanRequest<'_>) -> (Result<MotionPlan, String>, f64) {
 fn main() {
     let number = |index: usize| std::env::args().nth(index).and_then(|text| text.parse::<u64>().ok());
     let (Some(count), Some(seed)) = (number(1), number(2)) else {
-        eprintln!("Usage: car OBSTACLES SEED");
+        eprintln!("Usage: car OBSTACLES SEED [forwards]");
         std::process::exit(2);
     };
+    let reverses = std::env::args().nth(3).is_none_or(|text| text != "forwards");
     let map = trial::map(seed, usize::try_from(count).unwrap_or(usize::MAX));
     let model = FormationModel::alone(BODY).unwrap_or_else(|error| unreachable!("{error}"));
     let (sin, cos) = math::sin_cos(STEERING);
     let radius = WHEELBASE * cos / sin;
-    let limits = TravelLimits { curvature: 1.0 / radius, reverses: true, ..TravelLimits::default() };
+    let limits = TravelLimits { curvature: 1.0 / radius, reverses, ..TravelLimits::default() };
     let mut mission = trial::mission();
     mission.goal = PlanGoal { tolerance: TOLERANCE, heading_tolerance: TOLERANCE, ..mission.goal };
     let request = PlanRequest::new(&map, &model, limits, mission);
