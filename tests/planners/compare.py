@@ -90,7 +90,7 @@ def main():
     print("| obstacles | planner | found | length | to ours | shorter, longer | turns about | time | worst | checks | faults |")
     print("|---|---|---|---|---|---|---|---|---|---|---|")
     notes, faults, check_seconds, check_count = [], [], 0.0, 0
-    plans, stopping = dict.fromkeys(OURS, 0), dict.fromkeys(OURS, 0)
+    durations, stopping = {name: [] for name in OURS}, dict.fromkeys(OURS, 0)
     for count in COUNTS:
         rows = {name: Row() for name in [*OURS, *planners]}
         for seed in range(1, maps + 1):
@@ -100,8 +100,9 @@ def main():
             for name, read in problem.plans.items():
                 plan = read["plan"]
                 rows[name].add(judge.judge(plan["poses"]) if plan else None, read["seconds"], 0)
-                plans[name] += bool(plan)
-                stopping[name] += bool(plan) and any(a == b for a, b in itertools.pairwise(plan["backwards"]))
+                if plan:
+                    durations[name].append(plan["duration"])
+                    stopping[name] += any(a == b for a, b in itertools.pairwise(plan["backwards"]))
             for name, (planner, seconds) in planners.items():
                 found, taken, checks = timed(planner, problem, seconds)
                 if found is not None and not isinstance(found, list):
@@ -124,7 +125,8 @@ def main():
             print(row.line(count, name, rows[OURS[0]]), flush=True)
     print(f"\nA check took the others {1e6 * check_seconds / max(check_count, 1):.0f} µs, with all that they did besides.")
     for name in OURS:
-        print(f"{name}: {stopping[name]} of {plans[name]} stop to steer, and go on in the same direction.")
+        mean, plans = statistics.fmean(durations[name] or [0]), len(durations[name])
+        print(f"{name}: {stopping[name]} of {plans} stop to steer, and go on in the same direction; {mean:.1f} s on average.")
     print("\n".join(notes) or f"No map where only others find a way, or one that is shorter by more than {LONGER}.")
     print("\n".join(faults))
     return 1 if faults else 0

@@ -14,7 +14,8 @@ import time
 
 from ompl import base, geometric, util
 
-STEP = 0.05  # m between poses that are checked and returned
+STEP = 0.05  # m between poses that are checked
+FINE = 0.01  # m between poses that are returned: the car may turn about twice on short ways
 
 
 def quiet_and_seeded(seed):
@@ -55,7 +56,7 @@ def ompl(kind, simplifies, problem, seconds):
 
 
 def poses_of_ompl(path):
-    path.interpolate(max(2, math.ceil(path.length() / STEP)))
+    path.interpolate(max(2, math.ceil(path.length() / FINE)))
     states = [path.getState(index) for index in range(path.getStateCount())]
     return [(state.getX(), state.getY(), state.getYaw()) for state in states]
 

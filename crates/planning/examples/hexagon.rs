@@ -20,15 +20,15 @@ const CYLINDERS: usize = 60;
 const RINGS: usize = 20;
 /// Where robots start and end: the middle of the hexagon, ahead of the forest and behind it, m.
 const ENDS: [f64; 2] = [-26.0, 26.0];
-/// The height at which they fly, and how much of the height they take, m.
+/// The height at which they fly, and how far above and below it they reach, m.
 const HEIGHT: f64 = 0.5;
 const TALL: f64 = 0.25;
 /// Of the points that obstacles are drawn by, m: how thick a ring is.
 const RESOLUTION: f64 = 0.1;
 /// How near to obstacles the middles of robots may come, m, and the part of it that is the robot. Their planner pushes robots away
-/// from 0.5 m on (`obstacle_clearance`), and takes those for lost that come within 0.1 m (`obstacles_inflation`).
+/// from 0.5 m on (`obstacle_clearance`), and takes obstacles to be larger by 0.1 m (`obstacles_inflation`).
 const PUSHED: [f64; 2] = [0.5, 0.25];
-const LOST: [f64; 2] = [0.1, 0.1];
+const INFLATED: [f64; 2] = [0.1, 0.1];
 /// Levels from the hexagon to the column: over fewer, and so over less way, robots would have to move too fast.
 const STEPS: usize = 8;
 /// Places of robots 1 to 6 in the hexagon, [forward, left] of robot 0, m.
@@ -49,7 +49,7 @@ struct Case {
     /// Width of the ground, m.
     width: f64,
     rings: Rings,
-    /// [`PUSHED`] or [`LOST`].
+    /// [`PUSHED`] or [`INFLATED`].
     near: [f64; 2],
     levels: usize,
 }
@@ -94,7 +94,7 @@ fn crossed(rings: Rings, middle: f64, across: f64, upright: f64) -> Vec<[f64; 2]
         (share.abs() <= 1.0).then(|| across * (1.0 - share * share).sqrt())
     };
     let [low, high] = [HEIGHT - TALL, HEIGHT + TALL];
-    // A ring that is higher than its middle at these heights would grow narrower upwards: none hangs so low.
+    // Rings hang so high that they are widest at the top of these heights, or within them.
     match (rings, wide(low), wide(high)) {
         (Rings::Walls, ..) => vec![[-across, across]],
         (_, Some(low), Some(high)) => {
@@ -257,9 +257,9 @@ fn main() {
         case("no way around", narrow, Rings::AtHeight, PUSHED, all),
         case("no way around, hexagon only", narrow, Rings::AtHeight, PUSHED, 1),
         case("no way around, rings are walls", narrow, Rings::Walls, PUSHED, all),
-        case("no way around, 0.1 m", narrow, Rings::AtHeight, LOST, all),
-        case("no way around, 0.1 m, hexagon only", narrow, Rings::AtHeight, LOST, 1),
-        case("no way around, 0.1 m, rings are walls", narrow, Rings::Walls, LOST, all),
+        case("no way around, 0.1 m", narrow, Rings::AtHeight, INFLATED, all),
+        case("no way around, 0.1 m, hexagon only", narrow, Rings::AtHeight, INFLATED, 1),
+        case("no way around, 0.1 m, rings are walls", narrow, Rings::Walls, INFLATED, all),
     ];
     println!(
         "| forest | found | go around | computing | length | duration | similarity error | off the hexagon | apart |"
