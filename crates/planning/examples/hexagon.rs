@@ -44,7 +44,7 @@ enum Rings {
 }
 
 /// A way of posing the problem.
-struct Case {
+struct ForestCase {
     name: &'static str,
     /// Width of the ground, m.
     width: f64,
@@ -55,7 +55,7 @@ struct Case {
 }
 
 /// As their generator draws it: cylinders 0.8 m apart at least, upright rings that look along x within 0.5 rad.
-fn forest(seed: u64, case: &Case) -> Map {
+fn forest(seed: u64, case: &ForestCase) -> Map {
     let mut draws = Draws::new(seed);
     let snapped = |value: f64| ((value / RESOLUTION).floor() + 0.5) * RESOLUTION;
     let mut middles: Vec<[f64; 2]> = vec![];
@@ -201,7 +201,7 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Plans over all forests and prints a row of the table.
-fn row(case: &Case, seeds: u64) {
+fn row(case: &ForestCase, seeds: u64) {
     let model = hexagon(case.near[1]).with_levels(0..case.levels);
     let desired: Vec<[f64; 2]> = model.places(0);
     let start = PlanStart::at(Pose::new(ENDS[0], 0.0, 0.0));
@@ -248,7 +248,7 @@ fn main() {
         similarity_error(&column, &desired),
         distance_error(&column, &desired)
     );
-    let case = |name, width, rings, near, levels| Case { name, width, rings, near, levels };
+    let case = |name, width, rings, near, levels| ForestCase { name, width, rings, near, levels };
     let [wide, narrow] = [GROUND[1], FOREST[1]];
     let all = STEPS + 1;
     let cases = [
