@@ -67,7 +67,7 @@ fn the_lab_opens_no_empty_window() {
     let folder = tempfile::tempdir().expect("a folder");
     for (name, words) in [
         ("circle-tree", &["circle-tree", "did you mean `circle-three`"][..]),
-        ("no-such", &["no-such", "cannot read"]),
+        ("no-such", &["no-such: no such file"]),
         ("no/such.toml", &["no/such.toml"]),
         ("lost.mcap", &["lost.mcap"]),
         ("lost.png", &["lost.png"]),
