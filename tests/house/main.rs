@@ -111,6 +111,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
             "simulation",
             "studies",
             "metrics",
+            "output",
             "recording",
             "rendering",
             "footage",

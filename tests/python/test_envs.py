@@ -2,13 +2,14 @@
 
 import importlib.util
 import pathlib
+import pickle
 import warnings
 
 import echelon
 import gymnasium
 import numpy as np
 import pytest
-from echelon import EchelonError, Scene, SceneError
+from echelon import EchelonError, RenderingError, Scene, SceneError
 from echelon.envs import (
     ActionError,
     FormationEnv,
@@ -276,9 +277,9 @@ class TestBadInput:
         env.reset(seed=0)
         action = np.zeros(12)
         action[3] = np.nan
-        with pytest.raises(ActionError, match="turn rate of `robot-3` in copy 0 is NaN"):
+        with pytest.raises(ActionError, match="^the turn rate of `robot-3` is NaN"):
             env.step(action)
-        with pytest.raises(ActionError, match=r"actions are \(5,\)"):
+        with pytest.raises(ActionError, match=r"actions are \(5,\); they are numbers of the shape \(12,\): acc"):
             env.step(np.zeros(5))
         with pytest.raises(ActionError):
             env.step("left")
@@ -287,8 +288,10 @@ class TestBadInput:
         envs.reset(seed=0)
         actions = np.zeros((2, 12))
         actions[1, 0] = np.inf
-        with pytest.raises(ActionError, match="acceleration of `robot-2` in copy 1 is inf"):
+        with pytest.raises(ActionError, match="^copy 1: the acceleration of `robot-2` is inf"):
             envs.step(actions)
+        with pytest.raises(ActionError, match=r"actions are \(12,\); they are numbers of the shape \(2, 12\)"):
+            envs.step(np.zeros(12))
         parallel = FormationParallelEnv(SCENE)
         parallel.reset(seed=0)
         actions = dict.fromkeys(parallel.agents, np.zeros(2))
@@ -308,6 +311,38 @@ class TestBadInput:
                 env.step(action)
         with pytest.raises(EchelonError):
             FormationEnv(SCENE).core.observe()
+
+    def test_an_environment_alone_does_not_speak_of_copies(self):
+        task = Task(samples=10, reward=lambda signals: signals.effort * (np.nan if signals.x_m[0, 0] > 0.05 else 1.0))
+        short = SCENE.set({"time.duration": 0.1})
+        drawn = FormationEnv(SCENE, render_mode="rgb_array", size=(64, 48))
+        ended, rewarded = FormationEnv(short, Task(samples=10)), FormationEnv(SCENE, task)
+        zero = np.zeros(12)
+        for env in (drawn, ended, rewarded):
+            if env is not drawn:
+                env.reset(seed=0)
+        for fails in (lambda: drawn.step(zero), drawn.render, lambda: drawn.core.observe(), lambda: drawn.core.copies.told(),
+                      lambda: [ended.step(zero) for _ in range(20)], lambda: ended.step(np.zeros(3)),
+                      lambda: ended.step({}), lambda: ended.step([[1], [2, 3]]), lambda: [rewarded.step(zero) for _ in range(99)]):
+            with pytest.raises((EchelonError, ResetNeeded, ValueError)) as caught:
+                fails()
+            assert "cop" not in str(caught.value), caught.value
+
+    def test_what_cannot_draw_is_said_where_it_is_made(self):
+        for make in (FormationEnv, FormationParallelEnv, FormationVectorEnv):
+            with pytest.raises(RenderingError, match="no such adapter"):
+                make(SCENE, render_mode="rgb_array", adapter="no such adapter")
+            with pytest.raises(ValueError, match="sideways"):
+                make(SCENE, render_mode="rgb_array", view="sideways")
+            with pytest.raises(ValueError, match="size is width and height"):
+                make(SCENE, render_mode="rgb_array", size=(64,))
+            # Nothing is drawn without it.
+            make(SCENE, adapter="no such adapter")
+            env = make(SCENE, render_mode="rgb_array", size="64x48")
+            env.reset(seed=0)
+            assert np.shape(env.render())[-3:] == (48, 64, 3)
+        with pytest.raises(TypeError, match="make the environment in the process"):
+            pickle.dumps(FormationEnv(SCENE))
 
     @pytest.mark.parametrize(
         ("make", "message"),
@@ -399,7 +434,7 @@ def test_everything_public_is_documented():
 def test_rewards_are_numbers_and_tasks_are_tasks():
     env = FormationVectorEnv("circle-three", num_envs=2, task=Task(reward=lambda signals: signals.effort * np.nan))
     env.reset(seed=1)
-    with pytest.raises(ValueError, match="reward of agent 0 in copy 0"):
+    with pytest.raises(ValueError, match="^copy 0: the reward of `follower-1` is nan"):
         env.step(env.action_space.sample())
     with pytest.raises(TypeError, match="num_envs=64"):
         FormationVectorEnv("circle-three", 64)

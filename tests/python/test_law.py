@@ -1,5 +1,7 @@
 """Laws that are functions in Python."""
 
+import traceback
+
 import echelon
 import numpy as np
 import pytest
@@ -182,8 +184,16 @@ def test_a_law_that_raises_is_named_with_its_sample():
     assert isinstance(error.__cause__, LookupError) and error.__cause__.__traceback__ is not None
     assert (error.robot, error.sample) == ("follower-1", 6) and error.time == pytest.approx(0.06)
     assert sim.done and sim.sample == 5
-    with pytest.raises(echelon.RunError, match="no map"):
-        sim.step()
+    fork = sim.fork()
+    for goes_on in (sim.step, sim.advance, lambda: sim.apply({"law.k": 3}), fork.step):
+        with pytest.raises(LawError, match="no map") as again:
+            goes_on()
+        other = again.value
+        assert other is not error and other.__cause__ is error.__cause__
+        assert (other.robot, other.sample, other.time) == (error.robot, error.sample, error.time)
+        # The traceback ends where the law was asked, and does not grow from one time to the next.
+        frames, first = (traceback.extract_tb(one.__traceback__) for one in (other, error))
+        assert frames[-1] == first[-1] and len(frames) <= 3, frames
     with pytest.raises(LawError, match="sample 6"):
         SCENE.run(law=law)
 
@@ -211,7 +221,6 @@ def test_laws_that_a_scene_cannot_have():
         (3, TypeError),
         (Law(zero, followers=["zoe"]), ValueError),
         (Law(zero, followers=["leader"]), ValueError),
-        (Law(zero, knows="everything"), ValueError),
     ]:
         with pytest.raises(error):
             SCENE.run(law=law)
@@ -219,6 +228,53 @@ def test_laws_that_a_scene_cannot_have():
         Scene.load("two-leaders").run(law=zero)
     with pytest.raises(echelon.SceneError, match="continuous"):
         SCENE.set({"time.mode": "continuous"}).run(law=zero)
+
+
+def test_an_interrupt_in_a_law_is_one_once():
+    def law(told, time, memory):
+        if time > 0.025:
+            raise KeyboardInterrupt
+        return ZERO
+
+    sim = SCENE.simulation(law=law)
+    with pytest.raises(KeyboardInterrupt):
+        sim.advance()
+    for _ in range(2):
+        with pytest.raises(LawError, match=r"interrupted at sample 3 \(0.03 s\)") as caught:
+            sim.step()
+        assert isinstance(caught.value.__cause__, KeyboardInterrupt)
+
+
+def test_what_a_law_raised_is_not_the_fault_of_the_next_work(tmp_path):
+    def law(told, time, memory):
+        raise LookupError("no map")
+
+    def fails(done, total):
+        raise ValueError("no more")
+
+    # Both raise: `progress` is called at the end of the run that the law breaks off.
+    with pytest.raises(ValueError, match="no more"):
+        SCENE.run(fails, law=law)
+    with pytest.raises(ValueError, match="not within the run"):
+        SCENE.capture(tmp_path, 99.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "message"),
+    [
+        ({"knows": "motoin"}, ValueError, r'"output", "rates" or "motion", not \'motoin\': did you mean "motion"\?'),
+        ({"knows": "foo"}, ValueError, r'"output", "rates" or "motion", not \'foo\'$'),
+        ({"knows": 3}, ValueError, "not 3"),
+        ({"name": 3}, TypeError, "name of a law"),
+    ],
+)
+def test_what_a_law_cannot_be_is_said_where_it_is_made(options, error, message):
+    with pytest.raises(error, match=message):
+        Law(lambda told, time, memory: ZERO, **options)
+    law = Law(lambda told, time, memory: ZERO)
+    law.knows = "everything"
+    with pytest.raises(ValueError, match="everything"):
+        SCENE.run(law=law)
 
 
 def test_a_memory_that_cannot_be_copied_is_said_by_fork():

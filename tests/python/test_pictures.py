@@ -79,6 +79,43 @@ def test_mistakes_of_pictures_are_value_errors(tmp_path):
         assert sim.render(size=(64, 64)).shape == (64, 64, 3)
 
 
+def test_arguments_are_taken_as_people_write_them(tmp_path):
+    sim = SCENE.simulation()
+    plain = sim.render(size=(64, 48), without=["labels"])
+    for size in ("64x48", [64, 48], np.array([64, 48]), " 64 x 48 "):
+        assert (sim.render(size=size, without="labels") == plain).all()
+    at = {}
+    for name, times in (("one", 1), ("array", np.linspace(1, 1, 1)), ("tuple", (1.0,)), ("scalar", np.float64(1))):
+        [at[name]] = SCENE.capture(tmp_path / name, times, size="64x48", without="labels")
+    assert len({path.name for path in at.values()}) == 1
+    assert all((pixels(path) == pixels(at["one"])).all() for path in at.values())
+    told = []
+    sim.advance(0.1, progress=lambda done, total: told.append(done))
+    sim.advance(0.1, progress=True)
+    assert told
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "message"),
+    [
+        ({"size": 64}, TypeError, r'size is width and height in pixels, such as \(1280, 720\) or "1280x720", not 64'),
+        ({"size": "large"}, ValueError, "not 'large'"),
+        ({"size": (64, 48, 3)}, ValueError, r"not \(64, 48, 3\)"),
+        ({"size": (-64, 48)}, ValueError, r"not \(-64, 48\)"),
+        ({"size": (64.5, 48)}, TypeError, "not .64.5, 48."),
+        ({"size": range(1000)}, ValueError, r"not range\(0, 1000\)"),
+        ({"size": list(range(1000))}, ValueError, r"not list\b"),
+        ({"at": "soon"}, TypeError, r"at is times in s, such as 5 or \[0, 2.5, 5\], not 'soon'"),
+        ({"at": [1, "soon"]}, TypeError, r"not \[1, 'soon'\]"),
+        ({"without": 3}, TypeError, r'without is elements to hide, such as "labels" or \["labels", "inset"\], not 3'),
+        ({"without": "wings"}, ValueError, "wings"),
+    ],
+)
+def test_arguments_that_are_none_are_told_with_an_example(options, error, message, tmp_path):
+    with pytest.raises(error, match=message):
+        SCENE.capture(tmp_path, **options)
+
+
 def test_without_an_adapter_there_is_one_clear_exception(tmp_path):
     sim = SCENE.simulation(adapter="no such adapter")
     with pytest.raises(RenderingError, match="no such adapter"):

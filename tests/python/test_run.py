@@ -1,6 +1,10 @@
 """Runs: their tables in other libraries, their metrics, their folders."""
 
+import copy
+import errno
 import json
+import pickle
+from pathlib import Path
 
 import duckdb
 import numpy as np
@@ -9,7 +13,7 @@ import polars as pl
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from echelon import Scene
+from echelon import EchelonError, OutputError, Scene
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +38,7 @@ def test_the_run_is_that_of_the_program(run, program, tmp_path):
     assert run.metrics == json.loads((there / "metrics.json").read_text())
     assert [e.key for e in run.expectations] == [e["key"] for e in run.metrics["expectations"]]
     assert all(e.met for e in run.expectations)
-    with pytest.raises(OSError, match="force"):
+    with pytest.raises(OutputError, match="force"):
         run.save(here)
     run.save(here, force=True)
 
@@ -100,6 +104,49 @@ def test_a_run_plots_its_errors(run):
 def test_a_run_that_is_there_is_replaced_on_request(tmp_path):
     run = Scene.load("line-three").set({"time.duration": 0.1, "expect": {}}).run()
     run.save(tmp_path / "run")
-    with pytest.raises(OSError, match="force=True"):
+    with pytest.raises(OutputError) as caught:
         run.save(tmp_path / "run")
+    text = f"{tmp_path / 'run'} already holds a run: choose another folder, or give `force=True` to replace it"
+    assert str(caught.value) == text
+    assert caught.value.filename == str(tmp_path / "run") and caught.value.errno is None
     run.save(tmp_path / "run", force=True)
+    (tmp_path / "other").mkdir()
+    (tmp_path / "other/notes.txt").write_text("mine")
+    with pytest.raises(OutputError, match="holds other files: choose another folder$"):
+        run.save(tmp_path / "other", force=True)
+
+
+def test_a_place_that_cannot_be_written_is_one_exception(tmp_path):
+    (tmp_path / "file").write_text("no folder")
+    scene = Scene.load("line-three").set({"time.duration": 0.1, "expect": {}})
+    run = scene.run()
+    below = tmp_path / "file" / "below"
+    for writes in (lambda: run.save(below), lambda: scene.capture(below, size="64x64"),
+                   lambda: scene.film(below / "film.mp4", size="64x64"), lambda: scene.film(below, size="64x64"),
+                   lambda: scene.film(tmp_path, size="64x64"), lambda: run.save(tmp_path / "file")):
+        with pytest.raises(OutputError, match="file") as caught:
+            writes()
+        error = caught.value
+        assert isinstance(error, OSError) and isinstance(error, EchelonError)
+        assert error.filename.startswith(str(tmp_path)) and error.filename in str(error)
+    full = pickle.loads(pickle.dumps(OutputError("no room for a", errno.ENOSPC, "a")))
+    assert (str(full), full.errno, full.filename) == ("no room for a", errno.ENOSPC, "a")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no disk that is always full")
+def test_a_full_disk_has_the_number_of_the_system(tmp_path):
+    scene = Scene.load("line-three").set({"time.duration": 0.1, "expect": {}})
+    [picture] = scene.capture(tmp_path, 0.1, size="64x64")
+    picture.unlink()
+    picture.symlink_to("/dev/full")
+    with pytest.raises(OutputError) as caught:
+        scene.capture(tmp_path, 0.1, size="64x64")
+    assert (caught.value.errno, caught.value.filename) == (errno.ENOSPC, "/dev/full")
+
+
+def test_what_does_not_pickle_says_what_does(run):
+    sim = Scene.load("circle-three").simulation()
+    for thing, instead in ((run, "`save` it"), (sim, "`fork` copies it"), (run.edges, "pyarrow")):
+        for send in (pickle.dumps, copy.deepcopy):
+            with pytest.raises(TypeError, match=f"a {type(thing).__name__} cannot be pickled.*{instead}"):
+                send(thing)

@@ -1,5 +1,6 @@
 """Scenes: read, changed, refused."""
 
+import copy
 import pickle
 
 import echelon
@@ -60,6 +61,20 @@ def test_set_returns_a_new_scene():
     assert pickle.loads(pickle.dumps(again)) == again
 
 
+def test_a_scene_is_the_same_in_a_process_that_stands_elsewhere(tmp_path, monkeypatch):
+    (tmp_path / "scenes").mkdir()
+    (tmp_path / "scenes/own.csv").write_text("t,v,omega\n0,1,0\n5,1,0.1\n")
+    text = TEXT.replace('"circle", speed = 1.0, turn_rate = 0.3', '"table", file = "own.csv"')
+    (tmp_path / "scenes/own.toml").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    scene = Scene.load("scenes/own.toml").set({"time.duration": 2})
+    sent = pickle.dumps(scene)
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    assert pickle.loads(sent) == scene and pickle.loads(sent).name == "own"
+    assert copy.deepcopy(Scene.load("circle-three")) == Scene.load("circle-three")
+
+
 def test_everything_that_is_wrong_is_reported_at_once(tmp_path):
     path = tmp_path / "wrong.toml"
     path.write_text(TEXT.replace("distance = 2.0", "distanse = 2.0").replace("speed = 1.0", "speed = -1.0"))
@@ -94,6 +109,9 @@ def test_values_of_other_types_are_type_errors():
     for values in ([1], {1: 2}, {"law.k": object()}, "law.k=3"):
         with pytest.raises(TypeError):
             scene.set(values)
+    for source in (3, None, ["circle-three"]):
+        with pytest.raises(TypeError, match="name of one that ships"):
+            Scene.load(source)
     nested = []
     nested.append(nested)
     with pytest.raises(TypeError, match="deep"):

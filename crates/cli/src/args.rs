@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Args;
-use footage::PictureOptions;
+use footage::{PictureOptions, parse_size};
 use rendering::{AdapterChoice, Gpu};
 use scene::Override;
 use std::ops::RangeInclusive;
@@ -96,10 +96,7 @@ impl PictureArgs {
 }
 
 pub(crate) fn size(text: &str) -> Result<[u32; 2], String> {
-    let parse = |t: &str| t.parse::<u32>().ok();
-    text.split_once(['x', 'X', '×'])
-        .and_then(|(w, h)| Some([parse(w)?, parse(h)?]))
-        .ok_or_else(|| "write width and height in pixels, such as 1280x720".to_owned())
+    parse_size(text).ok_or_else(|| "write width and height in pixels, such as 1280x720".to_owned())
 }
 
 /// A time of a list; spaces after commas are natural.

@@ -1,6 +1,8 @@
 //! What can end a subcommand early, and the exit code it ends with.
 
 use crate::print::note;
+use output::Error::{Busy, Occupied};
+
 /// Why the program does not end with 0.
 #[derive(Debug)]
 pub(crate) enum Failure {
@@ -44,6 +46,19 @@ impl Failure {
         }
     }
 
+    /// What could not be written, with what helps; `by` names the option that names the place.
+    fn of_output(error: &output::Error, by: &str) -> Self {
+        let text = match error {
+            Occupied { what: Some(_), .. } => {
+                format!("{error}: choose another folder{by}, or give --force to replace it")
+            }
+            Occupied { what: None, .. } => format!("{error}: choose another folder{by}"),
+            Busy(_) => format!("{error}: wait for it, or choose another place{by}"),
+            _ => error.to_string(),
+        };
+        if error.is_usage() { Self::Usage(text) } else { Self::Machine(text) }
+    }
+
     /// One message on standard error.
     pub(crate) fn tell(&self) {
         if let Some(text) = self.text() {
@@ -59,6 +74,9 @@ impl From<footage::Error> for Failure {
             footage::Error::Broken(text) => Self::Broken(text),
             footage::Error::Usage(text) => Self::Usage(text),
             footage::Error::Machine(text) => Self::Machine(text),
+            // A film is named by one option of one subcommand, by another of another.
+            footage::Error::Output { error, kept: None } => Self::of_output(&error, ""),
+            footage::Error::Output { error, kept: Some(kept) } => Self::of_output(&error, "").but(&kept),
             footage::Error::Interrupted(text) => Self::Interrupted(text),
         }
     }
@@ -66,7 +84,11 @@ impl From<footage::Error> for Failure {
 
 impl From<studies::Error> for Failure {
     fn from(error: studies::Error) -> Self {
-        footage::Error::from(error).into()
+        match error {
+            studies::Error::Output(error) => error.into(),
+            studies::Error::Recording(error) => error.into(),
+            other => footage::Error::from(other).into(),
+        }
     }
 }
 
@@ -84,12 +106,15 @@ impl From<film::Error> for Failure {
 
 impl From<recording::Error> for Failure {
     fn from(error: recording::Error) -> Self {
-        footage::Error::from(error).into()
+        match error {
+            recording::Error::Output(error) => error.into(),
+            other => footage::Error::from(other).into(),
+        }
     }
 }
 
 impl From<output::Error> for Failure {
     fn from(error: output::Error) -> Self {
-        footage::Error::from(error).into()
+        Self::of_output(&error, " with --out")
     }
 }

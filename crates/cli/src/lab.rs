@@ -4,11 +4,15 @@ use crate::Outcome;
 use crate::args::{AdapterArgs, size};
 use crate::failure::Failure;
 #[cfg(feature = "lab")]
-use crate::interrupt;
+use crate::load::read_file;
+#[cfg(feature = "lab")]
+use crate::{interrupt, link};
 use clap::Args;
 use scene::Override;
 #[cfg(feature = "lab")]
 use signal_hook::low_level;
+#[cfg(feature = "lab")]
+use std::path::Path;
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -44,6 +48,9 @@ pub(crate) fn lab(_: LabArgs) -> Outcome {
 /// Opens the window, and waits until it is closed.
 #[cfg(feature = "lab")]
 pub(crate) fn lab(args: LabArgs) -> Outcome {
+    if let Some(path) = &args.scene {
+        check_there(path)?;
+    }
     interrupt::watch();
     let options = lab::Options {
         scene: args.scene,
@@ -59,6 +66,22 @@ pub(crate) fn lab(args: LabArgs) -> Outcome {
         lab::Error::Window(text) => Failure::Machine(text),
         lab::Error::Interrupted => Failure::Interrupted(error.to_string()),
     })
+}
+
+/// Fails where there is nothing to open, and the window would stay empty. A scene with mistakes is opened: it is mended there.
+#[cfg(feature = "lab")]
+fn check_there(path: &Path) -> Outcome {
+    let shipped = || path.to_str().and_then(scene::shipped).is_some();
+    if path.is_dir() && !path.join(recording::log::FILE).exists() {
+        let (shown, log) = (path.display(), recording::log::FILE);
+        return Err(Failure::Usage(format!(
+            "{shown} is a folder without {log}: name a scene file, a run folder, or a scene that `echelon scenes` lists"
+        )));
+    }
+    if path.exists() || link::meant(path)?.is_some() || shipped() {
+        return Ok(());
+    }
+    read_file(path, &[]).map(drop)
 }
 
 /// Ends the process as [`lab()`] would have failed: the window library leaves no way back to it.

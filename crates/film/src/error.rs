@@ -21,9 +21,6 @@ pub enum Error {
     /// An encoder refused a picture.
     #[error("encoding failed: {0}")]
     Encode(String),
-    /// Another program writes the same film.
-    #[error("another program is making {} just now; wait for it, or choose another file with -o", .0.display())]
-    Busy(PathBuf),
     /// An ending that no film has.
     #[error(
         "{} is no name of a film: write NAME.mp4, .m4v or .gif, {}one of {} through ffmpeg",

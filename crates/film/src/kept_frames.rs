@@ -49,7 +49,7 @@ impl KeptFrames {
         };
         let mut journal = open(&journal)?;
         if let Err(TryLockError::WouldBlock) = journal.try_lock() {
-            return Err(Error::Busy(goal.to_owned()));
+            return Err(output::Error::Busy(goal.to_owned()).into());
         }
         let mut frames = open(&frames)?;
         let mut text = String::new();

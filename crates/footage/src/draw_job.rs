@@ -4,6 +4,12 @@ use std::path::Path;
 use studies::SceneRun;
 use vocabulary::FleetInfo;
 
+/// Width and height in pixels, as people write them: `1280x720`.
+pub fn parse_size(text: &str) -> Option<[u32; 2]> {
+    let (width, height) = text.split_once(['x', 'X', '×'])?;
+    Some([width.trim().parse().ok()?, height.trim().parse().ok()?])
+}
+
 /// How pictures look.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PictureOptions {

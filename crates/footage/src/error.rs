@@ -3,14 +3,21 @@
 use vocabulary::counted;
 
 /// Why there are no pictures, or not all. The text is for people.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug)]
 pub enum Error {
     /// The run came to a number that is none.
     Broken(String),
     /// What was asked for, or the scene, is wrong.
     Usage(String),
-    /// The machine cannot do it: no adapter, disk full.
+    /// The machine cannot do it: there is no adapter, or it failed.
     Machine(String),
+    /// A file or folder could not be written.
+    Output {
+        /// Why.
+        error: output::Error,
+        /// What is there all the same.
+        kept: Option<String>,
+    },
     /// It was stopped.
     Interrupted(String),
 }
@@ -21,14 +28,10 @@ impl Error {
     pub fn but(self, kept: &str) -> Self {
         match self {
             Self::Machine(text) => Self::Machine(format!("{text}; {kept}")),
+            Self::Output { error, .. } if !error.is_usage() => {
+                Self::Output { error, kept: Some(kept.to_owned()) }
+            }
             other => other,
-        }
-    }
-
-    /// What happened.
-    pub fn text(&self) -> &str {
-        match self {
-            Self::Broken(text) | Self::Usage(text) | Self::Machine(text) | Self::Interrupted(text) => text,
         }
     }
 
@@ -40,7 +43,13 @@ impl Error {
 
 impl std::fmt::Display for Error {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(self.text())
+        match self {
+            Self::Broken(text) | Self::Usage(text) | Self::Machine(text) | Self::Interrupted(text) => {
+                f.write_str(text)
+            }
+            Self::Output { error, kept: None } => error.fmt(f),
+            Self::Output { error, kept: Some(kept) } => write!(f, "{error}; {kept}"),
+        }
     }
 }
 
@@ -70,23 +79,25 @@ impl From<rendering::Error> for Error {
 
 impl From<film::Error> for Error {
     fn from(error: film::Error) -> Self {
-        Self::of(&error, error.is_usage())
+        match error {
+            film::Error::Output(error) => error.into(),
+            other => Self::of(&other, other.is_usage()),
+        }
     }
 }
 
 impl From<output::Error> for Error {
     fn from(error: output::Error) -> Self {
-        Self::of(&error, error.is_usage())
+        Self::Output { error, kept: None }
     }
 }
 
 impl From<recording::Error> for Error {
     fn from(error: recording::Error) -> Self {
-        let usage = match &error {
-            recording::Error::Output(error) => error.is_usage(),
-            recording::Error::Log { .. } => true,
-            recording::Error::Table { .. } => false,
-        };
-        Self::of(&error, usage)
+        match error {
+            recording::Error::Output(error) => error.into(),
+            recording::Error::Log { .. } => Self::Usage(error.to_string()),
+            recording::Error::Table { .. } => Self::Machine(error.to_string()),
+        }
     }
 }

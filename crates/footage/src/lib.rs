@@ -15,7 +15,7 @@ pub mod times;
 
 pub use audience::Audience;
 pub use capture::{CaptureJob, Captured, capture};
-pub use draw_job::{DrawJob, PictureOptions};
+pub use draw_job::{DrawJob, PictureOptions, parse_size};
 pub use error::Error;
 pub use filming::{FilmJob, Filmed, Preset, captions, shoot};
 pub use playback::Playback;

@@ -1,4 +1,4 @@
-//! Why a file cannot be written.
+//! Why a file cannot be written: the facts. What helps, whoever asks says in the words of its options or arguments.
 
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -24,16 +24,16 @@ pub enum Error {
         /// What is wrong with it, and what helps.
         what: &'static str,
     },
-    /// The folder holds something already.
-    #[error("{} {}", path.display(), occupied(*what))]
+    /// The folder holds something already. What is ours is replaced where that is asked for, and nothing else.
+    #[error("{} {}", path.display(), what.map_or_else(|| "holds other files".to_owned(), |what| format!("already holds {what}")))]
     Occupied {
         /// The folder.
         path: PathBuf,
         /// What it holds; other things than ours if `None`.
         what: Option<&'static str>,
     },
-    /// Another program writes the same folder.
-    #[error("{} is being written by another program: wait for it, or choose another folder with --out", .0.display())]
+    /// Another program writes the same file or folder.
+    #[error("{} is being written by another program", .0.display())]
     Busy(PathBuf),
 }
 
@@ -41,6 +41,16 @@ impl Error {
     /// Whether another place would mend it; otherwise the machine is to blame.
     pub fn is_usage(&self) -> bool {
         !matches!(self, Self::Io { .. })
+    }
+
+    /// The file or folder.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Io { path, .. }
+            | Self::Place { path, .. }
+            | Self::Occupied { path, .. }
+            | Self::Busy(path) => path,
+        }
     }
 
     /// For `map_err`: an i/o error met while doing `action` to `path`.
@@ -52,14 +62,4 @@ impl Error {
     pub(crate) fn place(path: &Path, what: &'static str) -> Self {
         Self::Place { path: path.to_owned(), what }
     }
-}
-
-/// What can be done about a folder that holds something: only what is ours is replaced.
-fn occupied(what: Option<&str>) -> String {
-    what.map_or_else(
-        || "holds other files: choose another folder with --out".to_owned(),
-        |what| {
-            format!("already holds {what}: choose another folder with --out, or give --force to replace it")
-        },
-    )
 }

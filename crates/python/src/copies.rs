@@ -1,12 +1,13 @@
 //! Many copies of a scene side by side, driven by actions: what the environments in `python/echelon/envs` are made of.
 
-use crate::error::{ActionError, EchelonError, RunError, busy, of_scene};
+use crate::arguments::Size;
+use crate::error::{ActionError, EchelonError, RunError, busy, not_pickled, of_scene};
 use crate::numbers::{cube, pixels};
 use crate::picture_cache::PictureCache;
-use crate::pictures::{Viewer, of_footage, warn};
+use crate::pictures::{Viewer, looks, of_footage, warn};
 use crate::scene::PyScene;
 use crate::watch::detached;
-use footage::PictureOptions;
+use footage::{PictureOptions, RenderSetup};
 use laws::INPUTS;
 use metrics::Digest;
 use numpy::{PyArray1, PyArray3, PyReadonlyArray1, PyReadonlyArray3, PyUntypedArrayMethods};
@@ -15,10 +16,11 @@ use pyo3::prelude::*;
 use rayon::ThreadPoolBuilder;
 use rendering::{PictureSpec, Trail};
 use scene::Scene;
+use simulation::{Simulation, build};
 use std::sync::{Mutex, MutexGuard, TryLockError};
 use studies::copies::{
-    ACTION, Agent, Copies, CopyConfig, CopyError, CopySink, CopyStatus, Episode, ObservationColumn, Outcome,
-    SIGNALS, StartScatter,
+    ACTION, Agent, Copies, CopyConfig, CopyError, CopyFault, CopySink, CopyStatus, Episode,
+    ObservationColumn, Outcome, SIGNALS, StartScatter,
 };
 use vocabulary::{Command, FleetInfo, StepRecord};
 
@@ -29,6 +31,8 @@ pub(crate) struct PyCopies {
     count: usize,
     agents: usize,
     columns: usize,
+    /// Whether errors say which copy they are of.
+    numbered: bool,
     adapter: String,
     copies: Mutex<Copies<CopyMemory>>,
     drawing: Mutex<PictureCache>,
@@ -63,17 +67,6 @@ struct Rows {
     observations: Vec<f64>,
     signals: Vec<f64>,
     progress: Vec<CopyStatus>,
-}
-
-fn of_copies(error: &CopyError) -> PyErr {
-    match error {
-        CopyError::NotFinite { .. } => ActionError::new_err(error.to_string()),
-        CopyError::NotRunning { .. } => EchelonError::new_err(error.to_string()),
-        CopyError::Broken { error: studies::Error::Usage(_) | studies::Error::Build(_), .. } => {
-            of_scene(error)
-        }
-        CopyError::Broken { .. } => RunError::new_err(error.to_string()),
-    }
 }
 
 fn wrong(text: &str) -> PyErr {
@@ -117,6 +110,36 @@ impl PyCopies {
         }
     }
 
+    /// Why copies did not go on.
+    fn failed(&self, error: &CopyError) -> PyErr {
+        let text = if self.numbered { error.to_string() } else { error.fault.to_string() };
+        match &error.fault {
+            CopyFault::NotFinite { .. } => ActionError::new_err(text),
+            CopyFault::NotRunning(_) => EchelonError::new_err(text),
+            CopyFault::Broken(studies::Error::Usage(_) | studies::Error::Build(_)) => of_scene(text),
+            CopyFault::Broken(_) => RunError::new_err(text),
+        }
+    }
+
+    /// What draws pictures with these options, set up; `work` draws.
+    fn drawing<T: Send>(
+        &self,
+        py: Python<'_>,
+        fleet: &FleetInfo,
+        options: PictureOptions,
+        work: impl FnOnce(&mut RenderSetup) -> Result<T, footage::Error> + Send,
+    ) -> PyResult<T> {
+        let mut drawing = self.drawing.try_lock().map_err(|_| busy())?;
+        let drawing = &mut *drawing;
+        let notes = Mutex::default();
+        let done = detached(py, None, 1, |watch| {
+            let viewer = Viewer::new(watch, &notes);
+            work(drawing.setup(options, &self.scene, fleet, &self.adapter, &viewer)?)
+        })?;
+        warn(py, notes)?;
+        done.map_err(|error| of_footage(&error))
+    }
+
     fn rows(&self) -> Rows {
         let agents = self.count * self.agents;
         Rows {
@@ -150,7 +173,7 @@ impl PyCopies {
             Ok(rows)
         });
         drop(guard);
-        self.arrays(py, done.map_err(|error| of_copies(&error))?)
+        self.arrays(py, done.map_err(|error| self.failed(&error))?)
     }
 }
 
@@ -186,10 +209,12 @@ impl PyCopies {
     ///     Threads that share the work; one per processor by default.
     /// adapter : str, optional
     ///     Graphics adapter for `render`.
+    /// numbered : bool, optional
+    ///     Whether errors say which copy they are of.
     #[new]
     #[pyo3(signature = (
         scene, count, *, agents, columns, scale, residual=false, samples=1, scattered=vec![], scatter=[0.0, 0.0], drawn=false,
-        threads=None, adapter="auto"
+        threads=None, adapter="auto", numbered=true
     ))]
     #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
     fn __new__(
@@ -205,6 +230,7 @@ impl PyCopies {
         drawn: bool,
         threads: Option<usize>,
         adapter: &str,
+        numbered: bool,
     ) -> PyResult<Self> {
         let scene = scene.scene().clone();
         if count == 0 || samples == 0 || agents.is_empty() || scale.len() != agents.len() {
@@ -232,6 +258,7 @@ impl PyCopies {
             count,
             agents: agents.len(),
             columns: columns.len(),
+            numbered,
             adapter: adapter.to_owned(),
             copies: Mutex::new(Copies::new(scene.clone(), config, count, pool, sink)),
             scene,
@@ -258,7 +285,7 @@ impl PyCopies {
         let episodes: Vec<_> = seeds.into_iter().zip(numbers).map(episode).collect();
         let mut guard = self.copies()?;
         let copies = &mut *guard;
-        py.detach(|| copies.reset(&episodes)).map_err(|error| of_copies(&error))
+        py.detach(|| copies.reset(&episodes)).map_err(|error| self.failed(&error))
     }
 
     /// Drives all copies on by one action, but for those that are idle.
@@ -313,8 +340,22 @@ impl PyCopies {
     /// ndarray of float64
     ///     `INPUTS` × copies × agents.
     fn told<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray3<f64>>> {
-        let told = self.copies()?.told().map_err(|error| of_copies(&error))?;
+        let told = self.copies()?.told().map_err(|error| self.failed(&error))?;
         cube(py, told, [INPUTS.len(), self.count, self.agents])
+    }
+
+    /// Sets up what `render` draws with, so that an adapter, a view or a size that cannot be is told before any episode.
+    ///
+    /// Parameters
+    /// ----------
+    /// view, size
+    ///     As for `Simulation.render`.
+    #[pyo3(signature = (view=None, size=None))]
+    fn prepare(&self, py: Python<'_>, view: Option<String>, size: Option<Size>) -> PyResult<()> {
+        let scene = &self.scene;
+        let setup = py.detach(|| build(scene)).map_err(of_scene)?;
+        let simulation = Simulation::new(setup);
+        self.drawing(py, simulation.fleet(), looks(view, size, None, false, None), |_| Ok(()))
     }
 
     /// A picture of a copy as it stands.
@@ -336,7 +377,7 @@ impl PyCopies {
         py: Python<'py>,
         copy: usize,
         view: Option<String>,
-        size: Option<[u32; 2]>,
+        size: Option<Size>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
         let guard = self.copies()?;
         let copies = &*guard;
@@ -346,21 +387,19 @@ impl PyCopies {
                 format!("copy {copy} has no picture: make the copies with drawn=True, and reset them first");
             return Err(EchelonError::new_err(text));
         };
-        let mut drawing = self.drawing.try_lock().map_err(|_| busy())?;
-        let drawing = &mut *drawing;
-        let notes = Mutex::default();
-        let options = PictureOptions { view, size, ..PictureOptions::default() };
-        let picture = detached(py, None, 1, |watch| {
-            let viewer = Viewer::new(watch, &notes);
-            let setup = drawing.setup(options, &self.scene, &drawn.fleet, &self.adapter, &viewer)?;
-            let mut trail = drawn.trail.clone();
-            trail.push(&record);
+        let mut trail = drawn.trail.clone();
+        let fleet = drawn.fleet.clone();
+        drop(guard);
+        trail.push(&record);
+        let picture = self.drawing(py, &fleet, looks(view, size, None, false, None), |setup| {
             let spec = PictureSpec::new(&trail, &record, &setup.layout, &setup.style);
             setup.renderer.draw(spec).map_err(footage::Error::from)
         })?;
-        drop(guard);
-        warn(py, notes)?;
-        pixels(py, &picture.map_err(|error| of_footage(&error))?)
+        pixels(py, &picture)
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
+        Err(not_pickled(slf.as_any(), "make the environment in the process that uses it"))
     }
 
     /// Of the trajectory of every copy, as far as its agents have decided; an empty text before its first episode.

@@ -1,12 +1,16 @@
 //! Errors of the core as exceptions of the package; the classes are in `python/echelon/_errors.py`.
 
+use output::Error::{Busy, Io, Occupied};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::{PyErr, import_exception};
 use scene::{Diagnostic, Diagnostics};
+use std::path::Path;
 
 import_exception!(echelon._errors, EchelonError);
 import_exception!(echelon._errors, SceneError);
 import_exception!(echelon._errors, RunError);
+import_exception!(echelon._errors, OutputError);
 import_exception!(echelon._errors, RenderingError);
 import_exception!(echelon._errors, EndOfRunError);
 import_exception!(echelon._errors, BusyError);
@@ -34,14 +38,47 @@ pub(crate) fn of_study(error: &studies::Error) -> PyErr {
     }
     match error {
         studies::Error::Usage(_) | studies::Error::Build(_) => of_scene(error),
-        studies::Error::Output(_) | studies::Error::Recording(_) => {
-            pyo3::exceptions::PyOSError::new_err(error.to_string())
-        }
+        studies::Error::Output(error) => of_output(error, None),
+        studies::Error::Recording(error) => of_recording(error),
         studies::Error::NotFinite(_)
         | studies::Error::Camera(_)
         | studies::Error::Law(_)
         | studies::Error::Interrupted { .. } => RunError::new_err(error.to_string()),
     }
+}
+
+/// A file or folder that could not be written, with what helps and with what is there all the same.
+pub(crate) fn of_output(error: &output::Error, kept: Option<&str>) -> PyErr {
+    let mut text = match error {
+        Occupied { what: Some(_), .. } => {
+            format!("{error}: choose another folder, or give `force=True` to replace it")
+        }
+        Occupied { what: None, .. } => format!("{error}: choose another folder"),
+        Busy(_) => format!("{error}: wait for it, or choose another place"),
+        _ => error.to_string(),
+    };
+    if let Some(kept) = kept {
+        text = format!("{text}; {kept}");
+    }
+    let number = match error {
+        Io { source, .. } => source.raw_os_error(),
+        _ => None,
+    };
+    not_written(text, number, error.path())
+}
+
+/// A run folder that could not be written.
+pub(crate) fn of_recording(error: &recording::Error) -> PyErr {
+    match error {
+        recording::Error::Output(error) => of_output(error, None),
+        recording::Error::Log { path, .. } | recording::Error::Table { path, .. } => {
+            not_written(error.to_string(), None, path)
+        }
+    }
+}
+
+fn not_written(text: String, number: Option<i32>, path: &Path) -> PyErr {
+    OutputError::new_err((text, number, path.as_os_str().to_owned()))
 }
 
 /// Something that another thread is at work on.
@@ -50,6 +87,15 @@ pub(crate) fn busy() -> PyErr {
         "another thread is at work on this simulation, or it is what calls this function: wait until it is done, or give each a \
          fork() of its own",
     )
+}
+
+/// What is of this process and cannot be sent to another one: `instead` says what can.
+pub(crate) fn not_pickled(object: &Bound<'_, PyAny>, instead: &str) -> PyErr {
+    let kind = object.get_type();
+    let kind = kind.name().map(|name| name.to_string()).unwrap_or_default();
+    PyTypeError::new_err(format!(
+        "a {kind} cannot be pickled, and so not be sent to another process: {instead}"
+    ))
 }
 
 /// Calls a function of the package's own Python code.

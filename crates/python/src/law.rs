@@ -23,6 +23,20 @@ pub(crate) fn raised() -> Option<PyErr> {
     RAISED.take()
 }
 
+/// What a law may know of the leaders, by the words for it.
+pub(crate) const KNOWLEDGE: [(&str, Knowledge); 3] =
+    [("output", Knowledge::Output), ("rates", Knowledge::Rates), ("motion", Knowledge::Motion)];
+
+/// What a law raised and broke a run off with, to be raised now, and what to raise whenever the run is to go on after that.
+pub(crate) fn again(py: Python<'_>, raised: PyErr, sample: u64, time: f64) -> (PyErr, PyErr) {
+    let error = raised.clone_ref(py).into_value(py);
+    let pair = call_package(py, ["_law", "again"], (error, sample, time)).and_then(|pair| pair.extract());
+    pair.map_or_else(
+        |failed| (failed, raised),
+        |(now, then): (Bound<'_, PyAny>, Bound<'_, PyAny>)| (PyErr::from_value(now), PyErr::from_value(then)),
+    )
+}
+
 /// Every number that a law is told: its name, its unit, and one line about it.
 pub(crate) fn inputs() -> Vec<(&'static str, String, &'static str)> {
     INPUTS.iter().map(|(_, name, unit, about)| (*name, unit.to_string(), *about)).collect()
@@ -37,15 +51,9 @@ pub(crate) fn attach(law: &Bound<'_, PyAny>, run: &mut SceneRun) -> PyResult<()>
     let names: Vec<String> = run.simulation.fleet().robots.iter().map(|robot| robot.name.clone()).collect();
     let followers: Vec<&str> = run.scene.followers().map(|(name, _)| name).collect();
     let caller = call_package(py, ["_law", "caller"], (law, &names, followers, run.scene.time.period))?;
-    let knows = match caller.getattr("knows")?.extract::<String>()?.as_str() {
-        "output" => Knowledge::Output,
-        "rates" => Knowledge::Rates,
-        "motion" => Knowledge::Motion,
-        other => {
-            let text = format!("a law knows \"output\", \"rates\" or \"motion\", not \"{other}\"");
-            return Err(PyValueError::new_err(text));
-        }
-    };
+    let knows: String = caller.getattr("knows")?.extract()?;
+    let known = KNOWLEDGE.iter().find(|(word, _)| *word == knows).map(|(_, knowledge)| *knowledge);
+    let knows = known.ok_or_else(|| PyValueError::new_err(format!("a law does not know \"{knows}\"")))?;
     let followers: Vec<usize> = caller.getattr("followers")?.extract()?;
     let name = caller.getattr("name")?.extract()?;
     let law = Box::new(PythonLaw { name, knows, caller: caller.unbind() });

@@ -3,6 +3,7 @@
 //! This crate makes the extension `echelon._echelon`; the package around it, with documentation and types for users, is in
 //! `python/echelon`. The interpreter is released while the core works, and a [`watch::Watch`] looks after signals meanwhile.
 
+mod arguments;
 mod cameras;
 mod copies;
 mod error;
@@ -44,6 +45,7 @@ mod _echelon {
         module.add("ROBOT_COLUMNS", recording::robot_columns())?;
         module.add("EDGE_COLUMNS", recording::edge_columns())?;
         module.add("SIGNALS", studies::copies::SIGNALS.to_vec())?;
-        module.add("INPUTS", crate::law::inputs())
+        module.add("INPUTS", crate::law::inputs())?;
+        module.add("KNOWLEDGE", crate::law::KNOWLEDGE.map(|(word, _)| word).to_vec())
     }
 }

@@ -1,5 +1,6 @@
 //! Pictures and films from Python: the one who waits for them is a [`Watch`].
 
+use crate::arguments::{Names, Size};
 use crate::error::RenderingError;
 use crate::watch::Watch;
 use footage::{Audience, PictureOptions};
@@ -76,6 +77,7 @@ pub(crate) fn of_footage(error: &footage::Error) -> PyErr {
         footage::Error::Usage(_) => PyValueError::new_err(text),
         footage::Error::Broken(_) => crate::error::RunError::new_err(text),
         footage::Error::Machine(_) => RenderingError::new_err(text),
+        footage::Error::Output { error, kept } => crate::error::of_output(error, kept.as_deref()),
         footage::Error::Interrupted(_) => PyKeyboardInterrupt::new_err(text),
     }
 }
@@ -83,11 +85,12 @@ pub(crate) fn of_footage(error: &footage::Error) -> PyErr {
 /// How pictures look, as keyword arguments say it.
 pub(crate) fn looks(
     view: Option<String>,
-    size: Option<[u32; 2]>,
-    without: Option<Vec<String>>,
+    size: Option<Size>,
+    without: Option<Names>,
     overlay: bool,
     inset_camera: Option<String>,
 ) -> PictureOptions {
-    let without = without.unwrap_or_default();
+    let without = without.map_or_else(Vec::new, |Names(names)| names);
+    let size = size.map(|Size(size)| size);
     PictureOptions { view, size, without, overlay, inset_camera, ..PictureOptions::default() }
 }

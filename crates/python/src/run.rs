@@ -1,10 +1,10 @@
 //! A run to its end: its tables, its metrics, what became of its expectations.
 
-use crate::error::{call_package, of_study};
+use crate::error::{call_package, not_pickled, of_recording, of_study};
 use crate::table::{PyTable, batch, of_arrow};
 use crate::watch::detached;
 use metrics::{JudgedExpectation, Metrics};
-use pyo3::exceptions::PyOSError;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use recording::{Recorder, RunOptions, Status, TableBuilder, TableKind, metrics_text};
 use scene::Scene;
@@ -145,7 +145,7 @@ impl PyRun {
     /// Errors, effort, clearance, contacts, certificates and expectations: what ``metrics.json`` holds.
     #[getter]
     fn metrics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let text = metrics_text(&self.metrics, &self.findings).map_err(PyOSError::new_err)?;
+        let text = metrics_text(&self.metrics, &self.findings).map_err(PyRuntimeError::new_err)?;
         py.import("json")?.getattr("loads")?.call1((text,))
     }
 
@@ -220,6 +220,11 @@ impl PyRun {
     ///     Writes ``log.mcap``, which other tools open.
     /// force : bool, optional
     ///     Replaces an earlier run in the folder.
+    ///
+    /// Raises
+    /// ------
+    /// OutputError
+    ///     Where the folder holds something, or cannot be written.
     #[pyo3(signature = (folder, *, csv=false, log=true, force=false))]
     fn save(&self, py: Python<'_>, folder: PathBuf, csv: bool, log: bool, force: bool) -> PyResult<()> {
         let total = self.moments().len() as u64;
@@ -236,11 +241,14 @@ impl PyRun {
             let certificates = self.metrics.certificates.clone();
             recorder.conclude(self.status, certificates, &self.findings).written.map(drop)
         })?;
-        // Who writes Python has arguments in place of options.
-        let told = |error: recording::Error| {
-            error.to_string().replace(" with --out", "").replace("give --force", "give `force=True`")
-        };
-        written.map_err(|error| PyOSError::new_err(told(error)))
+        written.map_err(|error| of_recording(&error))
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
+        Err(not_pickled(
+            slf.as_any(),
+            "`save` it and send the folder, or send what is needed of it, such as `run.metrics` or `run.digest`",
+        ))
     }
 
     fn __repr__(&self) -> String {

@@ -1,5 +1,6 @@
 //! Scenes: read, changed, checked, run.
 
+use crate::arguments::{Names, Size, Times};
 use crate::error::{call_package, of_diagnostics, of_scene};
 use crate::law::attach;
 use crate::pictures::{Viewer, looks, of_footage, warn};
@@ -8,7 +9,7 @@ use crate::simulation::PySimulation;
 use crate::values::{overrides, table, to_python};
 use crate::watch::detached;
 use footage::{CaptureJob, DrawJob, FilmJob, Filmed, Preset};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping, PyString, PyType};
 use rendering::{Gpu, GpuCameraRenderer};
@@ -70,7 +71,11 @@ impl PyScene {
     }
 
     /// What is called with the progress of work on this scene.
-    fn progress(&self, py: Python<'_>, wish: Option<Bound<'_, PyAny>>) -> PyResult<Option<Py<PyAny>>> {
+    pub(crate) fn progress(
+        &self,
+        py: Python<'_>,
+        wish: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Option<Py<PyAny>>> {
         let Some(wish) = wish else { return Ok(None) };
         let made = call_package(py, ["_progress", "as_progress"], (wish, self.name()))?;
         Ok((!made.is_none()).then(|| made.unbind()))
@@ -115,7 +120,12 @@ impl PyScene {
         {
             return Self::parse_with(text.to_str()?.to_owned(), PathBuf::from(NO_FILE), vec![]);
         }
-        let path: PathBuf = source.extract()?;
+        let path: PathBuf = source.extract().map_err(|_: PyErr| {
+            let kind = source.get_type().name().map(|name| name.to_string()).unwrap_or_default();
+            PyTypeError::new_err(format!(
+                "a scene is a file, the name of one that ships, a text or a dictionary, not {kind}"
+            ))
+        })?;
         let loaded =
             source.py().detach(|| Scene::load(&path, &[])).map_err(|faults| of_diagnostics(&faults))?;
         Ok(Self { scene: loaded.scene, text: loaded.text, path, sets: vec![] })
@@ -130,7 +140,9 @@ impl PyScene {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Pickled<'py>> {
         let restore = py.get_type::<Self>().getattr("_restore")?;
         let sets = self.sets.iter().map(ToString::to_string).collect();
-        Ok((restore, (self.text.clone(), self.path.clone(), sets)))
+        // Another process may stand in another folder, and look for law files and tables from there.
+        let path = if self.path.is_file() { std::path::absolute(&self.path)? } else { self.path.clone() };
+        Ok((restore, (self.text.clone(), path, sets)))
     }
 
     /// A new scene in which values are set; this one stays as it is, as with methods of pandas.
@@ -233,14 +245,14 @@ impl PyScene {
     /// ----------
     /// folder : path
     ///     Where they go; it may hold others.
-    /// at : list of float, optional
+    /// at : float or list of float, optional
     ///     Times, s; the end of the run by default.
     /// view : str, optional
     ///     Such as ``"snake"``, ``"top"``, ``"orbit"``, ``"follow:NAME"``, ``"camera:NAME"``, or several joined by ``+``; that of
     ///     the scene by default.
-    /// size : tuple of int, optional
-    ///     Width and height, pixels; those of the scene by default.
-    /// without : list of str, optional
+    /// size : tuple of int or str, optional
+    ///     Width and height, pixels, such as ``(1280, 720)`` or ``"1280x720"``; those of the scene by default.
+    /// without : str or list of str, optional
     ///     Elements to hide, such as ``["labels", "inset"]``.
     /// overlay : bool, optional
     ///     In views through cameras, draws what was detected.
@@ -258,6 +270,8 @@ impl PyScene {
     /// ------
     /// RenderingError
     ///     Where there is no adapter to draw with.
+    /// OutputError
+    ///     Where a picture cannot be written.
     #[pyo3(signature = (
         folder, at=None, *, view=None, size=None, without=None, overlay=false, inset_camera=None, law=None,
         adapter="auto", progress=None
@@ -267,10 +281,10 @@ impl PyScene {
         &self,
         py: Python<'_>,
         folder: PathBuf,
-        at: Option<Vec<f64>>,
+        at: Option<Times>,
         view: Option<String>,
-        size: Option<[u32; 2]>,
-        without: Option<Vec<String>>,
+        size: Option<Size>,
+        without: Option<Names>,
         overlay: bool,
         inset_camera: Option<String>,
         law: Option<&Bound<'_, PyAny>>,
@@ -278,7 +292,7 @@ impl PyScene {
         progress: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Vec<PathBuf>> {
         let picture = looks(view, size, without, overlay, inset_camera);
-        let at = at.unwrap_or_default();
+        let at = at.map_or_else(Vec::new, |Times(times)| times);
         let run = self.begin(py, law)?;
         let draw = DrawJob::of(&self.path, &run, adapter, picture);
         let notes = Mutex::default();
@@ -312,6 +326,13 @@ impl PyScene {
     /// -------
     /// Film
     ///     Which shows itself in a notebook.
+    ///
+    /// Raises
+    /// ------
+    /// RenderingError
+    ///     Where there is no adapter to draw with.
+    /// OutputError
+    ///     Where the film cannot be written, or another program writes it.
     #[pyo3(signature = (
         path, *, view=None, size=None, fps=None, preset=None, fresh=false, ffmpeg=false, without=None, overlay=false,
         inset_camera=None, law=None, adapter="auto", progress=None
@@ -322,12 +343,12 @@ impl PyScene {
         py: Python<'py>,
         path: PathBuf,
         view: Option<String>,
-        size: Option<[u32; 2]>,
+        size: Option<Size>,
         fps: Option<f64>,
         preset: Option<&str>,
         fresh: bool,
         ffmpeg: bool,
-        without: Option<Vec<String>>,
+        without: Option<Names>,
         overlay: bool,
         inset_camera: Option<String>,
         law: Option<&Bound<'py, PyAny>>,

@@ -1,7 +1,8 @@
 //! A simulation step by step: its state as arrays, changes on the way, copies.
 
-use crate::error::{EndOfRunError, RunError, busy};
-use crate::law::raised;
+use crate::arguments::{Names, Size};
+use crate::error::{EndOfRunError, RunError, busy, not_pickled};
+use crate::law::{again, raised};
 use crate::numbers::{matrix, pixels};
 use crate::picture_cache::PictureCache;
 use crate::pictures::{Viewer, looks, of_footage, warn};
@@ -43,13 +44,18 @@ struct Driven {
     drawing: PictureCache,
     /// By how much the last sample is later than what was asked for, s.
     ahead: f64,
+    /// What its law raised, where that ended it.
+    raised: Option<PyErr>,
 }
 
 impl Driven {
     /// Computes the next sample; whether there was one.
     fn step(&mut self) -> bool {
         self.before.clone_from(self.simulation.record());
-        let Some(record) = self.simulation.next_record() else { return false };
+        let Some(record) = self.simulation.next_record() else {
+            self.raised = raised().or_else(|| self.raised.take());
+            return false;
+        };
         self.digest.push(record);
         self.trail.push(record);
         self.ahead = 0.0;
@@ -57,10 +63,14 @@ impl Driven {
     }
 
     /// Why nothing more comes.
-    fn end(&self) -> PyErr {
+    fn end(&mut self, py: Python<'_>) -> PyErr {
         let time = self.simulation.record().snapshot.time;
         if let Some(fault) = self.simulation.fault() {
-            return raised().unwrap_or_else(|| RunError::new_err(fault.to_string()));
+            let Some(raised) = self.raised.take() else { return RunError::new_err(fault.to_string()) };
+            let sample = self.simulation.sample();
+            let (now, then) = again(py, raised, sample, sample as f64 * self.simulation.period());
+            self.raised = Some(then);
+            return now;
         }
         let why = if self.simulation.stopped() {
             "robots touched, and the scene stops then"
@@ -86,11 +96,12 @@ impl PySimulation {
             simulation,
             drawing: PictureCache::default(),
             ahead: 0.0,
+            raised: None,
         };
         let period = driven.simulation.period();
         // So that there is a state to look at.
         if !py.detach(|| driven.step()) {
-            return Err(driven.end());
+            return Err(driven.end(py));
         }
         driven.before.clone_from(driven.simulation.record());
         Ok(Self { fleet, period, adapter: adapter.to_owned(), driven: Mutex::new(Box::new(driven)) })
@@ -111,7 +122,7 @@ impl PySimulation {
         let mut guard = self.driven()?;
         let driven: &mut Driven = &mut guard;
         if driven.simulation.is_over() {
-            return Err(driven.end());
+            return Err(driven.end(py));
         }
         let from = driven.simulation.sample();
         let fault = detached(py, progress, last.saturating_sub(from) + 1, |watch| {
@@ -125,7 +136,7 @@ impl PySimulation {
             }
             driven.simulation.fault().is_some()
         })?;
-        if fault { Err(guard.end()) } else { Ok(()) }
+        if fault { Err(guard.end(py)) } else { Ok(()) }
     }
 }
 
@@ -138,7 +149,7 @@ impl PySimulation {
     /// EndOfRunError
     ///     Where `done` is true.
     /// RunError
-    ///     Where the run breaks off; a `LawError` where the law gives no commands.
+    ///     Where the run breaks off or has broken off; a `LawError` where the law gives no commands.
     /// BusyError
     ///     Where another thread is at work on this simulation.
     fn step(&self, py: Python<'_>) -> PyResult<()> {
@@ -146,7 +157,7 @@ impl PySimulation {
         let driven: &mut Driven = &mut guard;
         let over = driven.simulation.is_over();
         if over || !py.detach(|| driven.step()) {
-            return Err(guard.end());
+            return Err(guard.end(py));
         }
         drop(guard);
         py.check_signals()
@@ -160,10 +171,22 @@ impl PySimulation {
     /// ----------
     /// seconds : float, optional
     ///     How much further, s; to the end by default.
-    /// progress : callable, optional
-    ///     Called with the samples done and in all.
+    /// progress : bool or callable, optional
+    ///     As for `Scene.run`.
     #[pyo3(signature = (seconds=None, *, progress=None))]
-    fn advance(&self, py: Python<'_>, seconds: Option<f64>, progress: Option<Py<PyAny>>) -> PyResult<()> {
+    fn advance(
+        &self,
+        py: Python<'_>,
+        seconds: Option<f64>,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<()> {
+        let progress = match progress {
+            None => None,
+            wish => {
+                let scene = self.driven()?.scene.again();
+                scene.progress(py, wish)?
+            }
+        };
         let (last, asked) = {
             let driven = self.driven()?;
             let (end, now) = (driven.simulation.len() - 1, driven.simulation.record().snapshot.time);
@@ -204,7 +227,7 @@ impl PySimulation {
         let mut guard = self.driven()?;
         let driven: &mut Driven = &mut guard;
         if driven.simulation.is_over() {
-            return Err(driven.end());
+            return Err(driven.end(py));
         }
         let at = driven.simulation.sample() as f64 * self.period;
         let scene = driven.scene.changed(at, &sets)?;
@@ -216,7 +239,7 @@ impl PySimulation {
     }
 
     /// A copy that goes on by itself, with a deep copy of the memory of its law. Both come to the same future, bit for bit.
-    fn fork(&self) -> PyResult<Self> {
+    fn fork(&self, py: Python<'_>) -> PyResult<Self> {
         let driven = self.driven()?;
         let copy = Driven {
             scene: driven.scene.again(),
@@ -226,6 +249,7 @@ impl PySimulation {
             before: driven.before.clone(),
             drawing: PictureCache::default(),
             ahead: driven.ahead,
+            raised: driven.raised.as_ref().map(|error| error.clone_ref(py)),
         };
         drop(driven);
         match raised() {
@@ -245,9 +269,7 @@ impl PySimulation {
     /// ----------
     /// view : str, optional
     ///     As for `Scene.capture`; ``"camera:NAME"`` is what that robot sees.
-    /// size : tuple of int, optional
-    ///     Width and height, pixels; those of the scene by default.
-    /// without, overlay, inset_camera
+    /// size, without, overlay, inset_camera
     ///     As for `Scene.capture`.
     ///
     /// Returns
@@ -264,8 +286,8 @@ impl PySimulation {
         &self,
         py: Python<'py>,
         view: Option<String>,
-        size: Option<[u32; 2]>,
-        without: Option<Vec<String>>,
+        size: Option<Size>,
+        without: Option<Names>,
         overlay: bool,
         inset_camera: Option<String>,
     ) -> PyResult<Bound<'py, PyArray3<u8>>> {
@@ -365,6 +387,14 @@ impl PySimulation {
     fn edges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let numbers = edge_numbers(&self.fleet, self.driven()?.simulation.record());
         matrix(py, numbers, edge_columns().len())
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
+        Err(not_pickled(
+            slf.as_any(),
+            "send its `scene`, which has what was applied on the way, and begin there with `scene.simulation()`; `fork` copies \
+             it in this process",
+        ))
     }
 
     fn __repr__(&self) -> String {

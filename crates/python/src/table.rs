@@ -1,5 +1,6 @@
 //! Tables of a run as Arrow streams: pandas, polars, DuckDB and pyarrow take them as they are.
 
+use crate::error::not_pickled;
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::types::Float64Type;
@@ -106,6 +107,10 @@ impl PyTable {
                 PyList::new(py, values.collect::<Vec<_>>())?.into_any()
             }
         })
+    }
+
+    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
+        Err(not_pickled(slf.as_any(), "send `pyarrow.table(table)` or another library's table of it"))
     }
 
     /// Number of rows.

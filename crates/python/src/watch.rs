@@ -78,8 +78,10 @@ pub(crate) fn detached<T: Send>(
         })
     })?;
     let raised = watch.raised.lock().unwrap_or_else(PoisonError::into_inner).take();
-    match raised {
+    let ended = match raised {
         Some(error) => Err(error),
-        None => watch.look(py, watch.total.load(Relaxed)).map(|()| done),
-    }
+        None => watch.look(py, watch.total.load(Relaxed)),
+    };
+    // What a law raised at the same time is not to be taken for the fault of the next work on this thread.
+    ended.map(|()| done).inspect_err(|_| drop(crate::law::raised()))
 }

@@ -304,7 +304,8 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         record(folder.path(), 3).finish(Status::Interrupted).expect("finished");
         let refused = Recorder::create(folder.path(), &fleet(), options(false)).err().expect("refused");
-        assert!(refused.to_string().contains("--force"), "{refused}");
+        let Error::Output(refused) = refused else { panic!("{refused}") };
+        assert!(matches!(refused, output::Error::Occupied { what: Some("a run"), .. }), "{refused}");
         fs::write(folder.path().join("notes.txt"), "mine").expect("written");
         Recorder::create(folder.path(), &fleet(), options(true)).expect("replaced");
         assert_eq!(fs::read_to_string(folder.path().join("notes.txt")).expect("kept"), "mine");

@@ -63,6 +63,24 @@ fn files_that_are_no_scenes() {
 }
 
 #[test]
+fn the_lab_opens_no_empty_window() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for (name, words) in [
+        ("circle-tree", &["circle-tree", "did you mean `circle-three`"][..]),
+        ("no-such", &["no-such: no such file"]),
+        ("no/such.toml", &["no/such.toml"]),
+        ("lost.mcap", &["lost.mcap"]),
+        ("lost.png", &["lost.png"]),
+        ("#circle-tree", &["did you mean `circle-three`"]),
+        (".", &["log.mcap"]),
+    ] {
+        let (code, _, err) = told(&echelon(folder.path(), &["lab", name]));
+        assert_eq!(code, 2, "{name}: {err}");
+        assert!(words.iter().all(|word| err.contains(word)), "{name}: {err}");
+    }
+}
+
+#[test]
 fn a_file_of_100_mb_is_refused_without_being_read() {
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("large.toml");

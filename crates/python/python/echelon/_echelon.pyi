@@ -1,4 +1,4 @@
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any, final
@@ -13,6 +13,7 @@ from ._run import Expectation
 __all__ = [
     "EDGE_COLUMNS",
     "INPUTS",
+    "KNOWLEDGE",
     "ROBOT_COLUMNS",
     "SIGNALS",
     "Copies",
@@ -28,6 +29,7 @@ __version__: str
 ROBOT_COLUMNS: list[str]
 EDGE_COLUMNS: list[str]
 INPUTS: list[tuple[str, str, str]]
+KNOWLEDGE: list[str]
 SIGNALS: list[str]
 
 def scenes() -> dict[str, str]:
@@ -126,11 +128,11 @@ class Scene:
     def capture(
         self,
         folder: str | PathLike[str],
-        at: Sequence[float] | None = None,
+        at: float | Iterable[float] | None = None,
         *,
         view: str | None = None,
-        size: tuple[int, int] | None = None,
-        without: Sequence[str] | None = None,
+        size: tuple[int, int] | str | None = None,
+        without: str | Iterable[str] | None = None,
         overlay: bool = False,
         inset_camera: str | None = None,
         law: Law | Callable[..., Any] | None = None,
@@ -143,14 +145,14 @@ class Scene:
         ----------
         folder : path
             Where they go; it may hold others.
-        at : list of float, optional
+        at : float or list of float, optional
             Times, s; the end of the run by default.
         view : str, optional
             Such as ``"snake"``, ``"top"``, ``"orbit"``, ``"follow:NAME"``, ``"camera:NAME"``, or several joined by ``+``; that of
             the scene by default.
-        size : tuple of int, optional
-            Width and height, pixels; those of the scene by default.
-        without : list of str, optional
+        size : tuple of int or str, optional
+            Width and height, pixels, such as ``(1280, 720)`` or ``"1280x720"``; those of the scene by default.
+        without : str or list of str, optional
             Elements to hide, such as ``["labels", "inset"]``.
         overlay : bool, optional
             In views through cameras, draws what was detected.
@@ -168,18 +170,20 @@ class Scene:
         ------
         RenderingError
             Where there is no adapter to draw with.
+        OutputError
+            Where a picture cannot be written.
         """
     def film(
         self,
         path: str | PathLike[str],
         *,
         view: str | None = None,
-        size: tuple[int, int] | None = None,
+        size: tuple[int, int] | str | None = None,
         fps: float | None = None,
         preset: str | None = None,
         fresh: bool = False,
         ffmpeg: bool = False,
-        without: Sequence[str] | None = None,
+        without: str | Iterable[str] | None = None,
         overlay: bool = False,
         inset_camera: str | None = None,
         law: Law | Callable[..., Any] | None = None,
@@ -207,6 +211,13 @@ class Scene:
         -------
         Film
             Which shows itself in a notebook.
+
+        Raises
+        ------
+        RenderingError
+            Where there is no adapter to draw with.
+        OutputError
+            Where the film cannot be written, or another program writes it.
         """
     @property
     def name(self) -> str:
@@ -320,6 +331,11 @@ class Run:
             Writes ``log.mcap``, which other tools open.
         force : bool, optional
             Replaces an earlier run in the folder.
+
+        Raises
+        ------
+        OutputError
+            Where the folder holds something, or cannot be written.
         """
 
 @final
@@ -333,12 +349,12 @@ class Simulation:
         EndOfRunError
             Where `done` is true.
         RunError
-            Where the run breaks off; a `LawError` where the law gives no commands.
+            Where the run breaks off or has broken off; a `LawError` where the law gives no commands.
         BusyError
             Where another thread is at work on this simulation.
         """
     def advance(
-        self, seconds: float | None = None, *, progress: Callable[[int, int], Any] | None = None
+        self, seconds: float | None = None, *, progress: bool | Callable[[int, int], Any] | None = None
     ) -> None:
         """Computes all samples of the next seconds, or to the end of the run. Ctrl-C ends it at a sample, and it can go on.
 
@@ -348,8 +364,8 @@ class Simulation:
         ----------
         seconds : float, optional
             How much further, s; to the end by default.
-        progress : callable, optional
-            Called with the samples done and in all.
+        progress : bool or callable, optional
+            As for `Scene.run`.
         """
     def apply(self, values: Mapping[str, Any]) -> None:
         """Sets values from the next sample on, as if the scene had a change there; `scene` has it then.
@@ -369,9 +385,9 @@ class Simulation:
     def render(
         self,
         view: str | None = None,
-        size: tuple[int, int] | None = None,
+        size: tuple[int, int] | str | None = None,
         *,
-        without: Sequence[str] | None = None,
+        without: str | Iterable[str] | None = None,
         overlay: bool = False,
         inset_camera: str | None = None,
     ) -> NDArray[np.uint8]:
@@ -381,9 +397,7 @@ class Simulation:
         ----------
         view : str, optional
             As for `Scene.capture`; ``"camera:NAME"`` is what that robot sees.
-        size : tuple of int, optional
-            Width and height, pixels; those of the scene by default.
-        without, overlay, inset_camera
+        size, without, overlay, inset_camera
             As for `Scene.capture`.
 
         Returns
@@ -460,6 +474,7 @@ class Copies:
         drawn: bool = False,
         threads: int | None = None,
         adapter: str = "auto",
+        numbered: bool = True,
     ) -> Copies:
         """Makes copies none of which has an episode yet.
 
@@ -490,6 +505,8 @@ class Copies:
             Threads that share the work; one per processor by default.
         adapter : str, optional
             Graphics adapter for `render`.
+        numbered : bool, optional
+            Whether errors say which copy they are of.
         """
     def reset(self, seeds: Sequence[int | None], numbers: Sequence[int]) -> None:
         """Begins an episode in those copies that have a seed.
@@ -537,8 +554,16 @@ class Copies:
         ndarray of float64
             `INPUTS` × copies × agents.
         """
+    def prepare(self, view: str | None = None, size: Iterable[int] | str | None = None) -> None:
+        """Sets up what `render` draws with, so that an adapter, a view or a size that cannot be is told before any episode.
+
+        Parameters
+        ----------
+        view, size
+            As for `Simulation.render`.
+        """
     def render(
-        self, copy: int, view: str | None = None, size: Sequence[int] | None = None
+        self, copy: int, view: str | None = None, size: Iterable[int] | str | None = None
     ) -> NDArray[np.uint8]:
         """A picture of a copy as it stands.
 

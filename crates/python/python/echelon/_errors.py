@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class EchelonError(Exception):
@@ -81,6 +81,30 @@ class BusyError(EchelonError, RuntimeError):
 
 class ActionError(EchelonError, ValueError):
     """An action of an agent is no finite number, or actions have the wrong shape."""
+
+
+class OutputError(EchelonError, OSError):
+    """A file or folder cannot be written: the disk or its permissions refuse it, something else is there, or another program
+    writes it.
+
+    Attributes
+    ----------
+    filename : str
+        The file or folder.
+    errno : int or None
+        Number of the system's error, as in `errno`; None where something else is there.
+    """
+
+    def __init__(self, message: str, errno: int | None = None, filename: str | None = None) -> None:
+        super().__init__(message)
+        self.errno, self.filename = errno, filename
+
+    def __str__(self) -> str:
+        # The message names the file; what OSError makes of the other two would say it again.
+        return str(self.args[0])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (str(self), self.errno, self.filename)
 
 
 class RenderingError(EchelonError, RuntimeError):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import copy
+import difflib
 from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 
-from ._echelon import INPUTS
+from ._echelon import INPUTS, KNOWLEDGE
 from ._errors import LawError
 
 # Only a law that knows its leaders' motion is told these.
@@ -100,6 +101,9 @@ class Law:
                  memory: dict[str, Any] | None = None, name: str | None = None) -> None:
         if not callable(function):
             raise TypeError(f"a law is a function of (observations, time, memory), not {type(function).__name__}")
+        if not (name is None or isinstance(name, str)):
+            raise TypeError(f"the name of a law is a text, not {name!r}")
+        _check_knowledge(knows)
         if isinstance(followers, str):
             followers = [followers]
         self.function = function
@@ -111,6 +115,15 @@ class Law:
     def __repr__(self) -> str:
         whose = "all followers" if self.followers is None else ", ".join(self.followers)
         return f"<echelon.Law {self.name!r} of {whose}, knows {self.knows}>"
+
+
+def _check_knowledge(knows: Any) -> None:
+    if knows in KNOWLEDGE:
+        return
+    *first, last = (f'"{word}"' for word in KNOWLEDGE)
+    near = difflib.get_close_matches(str(knows), KNOWLEDGE, 1)
+    meant = f": did you mean \"{near[0]}\"?" if near else ""
+    raise ValueError(f"a law knows {', '.join(first)} or {last}, not {knows!r}{meant}")
 
 
 class Caller:
@@ -160,9 +173,27 @@ class Caller:
 def caller(law: Any, robots: list[str], followers: list[str], period: float) -> Caller:
     """What asks `law`, a `Law` or a function, in a simulation of `robots`."""
     law = law if isinstance(law, Law) else Law(law)
+    # An attribute may have been set since the law was made.
+    _check_knowledge(law.knows)
     names = followers if law.followers is None else law.followers
     unknown = [name for name in names if name not in robots]
     if unknown:
         raise ValueError(f"there is no robot called `{unknown[0]}`: the followers are {', '.join(followers)}")
     chosen = [robots.index(name) for name in names]
     return Caller(law, robots, chosen, period, copy.deepcopy(law.memory))
+
+
+def again(error: BaseException, sample: int, time: float) -> tuple[BaseException, LawError]:
+    """What to raise now for an `error` that broke a run off at a sample, and what to hand over whenever it is to go on after that.
+
+    The error itself is kept and never raised: whoever catches an exception has added frames to its traceback, which would hold
+    all that is in them as long as the simulation.
+    """
+    if not isinstance(error, LawError):
+        # An interrupt is one once.
+        kept = LawError(f"the law was interrupted at sample {sample} ({time:.2f} s)", None, sample, time)
+        kept.__cause__ = error
+        return error, kept
+    raised = LawError(str(error), error.robot, error.sample, error.time)
+    raised.__cause__ = error.__cause__
+    return raised.with_traceback(error.__traceback__), error

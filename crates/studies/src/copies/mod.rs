@@ -94,14 +94,22 @@ pub struct Outcome<'a> {
     pub progress: &'a mut [CopyStatus],
 }
 
-/// Why copies did not go on.
+/// Why a copy did not go on. Where there is one copy only, its fault says it all.
 #[derive(Debug, Error)]
-pub enum CopyError {
+#[error("copy {copy}: {fault}")]
+pub struct CopyError {
+    /// Number of the copy.
+    pub copy: usize,
+    /// What is wrong with it.
+    pub fault: CopyFault,
+}
+
+/// What is wrong with a copy.
+#[derive(Debug, Error)]
+pub enum CopyFault {
     /// An action is no finite number.
-    #[error("the {what} of `{robot}` in copy {copy} is {value}: an action is a finite number, −1 to 1")]
+    #[error("the {what} of `{robot}` is {value}: an action is a finite number, −1 to 1")]
     NotFinite {
-        /// Number of the copy.
-        copy: usize,
         /// The agent.
         robot: String,
         /// Which of the two numbers.
@@ -109,22 +117,18 @@ pub enum CopyError {
         /// What it is.
         value: f64,
     },
-    /// A copy takes no actions.
-    #[error("copy {copy} {why}: reset it first")]
-    NotRunning {
-        /// Number of the copy.
-        copy: usize,
-        /// What is the matter with it.
-        why: &'static str,
-    },
-    /// A copy broke off.
-    #[error("copy {copy}: {error}")]
-    Broken {
-        /// Number of the copy.
-        copy: usize,
-        /// Why.
-        error: Error,
-    },
+    /// It takes no actions: its episode has ended or has not begun.
+    #[error("its episode {0}: reset it first")]
+    NotRunning(&'static str),
+    /// Its run broke off.
+    #[error("{0}")]
+    Broken(Error),
+}
+
+impl CopyFault {
+    fn of(self, copy: usize) -> CopyError {
+        CopyError { copy, fault: self }
+    }
 }
 
 /// One copy.
@@ -202,7 +206,7 @@ impl<S: CopySink> Copies<S> {
     /// Begins a new episode in the copies for which there is one; the others stay as they are.
     ///
     /// # Errors
-    /// [`CopyError::Broken`] where a copy cannot begin.
+    /// [`CopyFault::Broken`] where a copy cannot begin.
     pub fn reset(&mut self, episodes: &[Option<Episode>]) -> Result<(), CopyError> {
         let Self { scene, config, slots, sink, pool } = self;
         let begun = slots.iter_mut().zip(episodes).enumerate();
@@ -210,7 +214,7 @@ impl<S: CopySink> Copies<S> {
         share(pool.as_ref(), begun.collect(), |(copy, slot, episode)| {
             slot.progress = CopyStatus::Blank;
             let copied = Copied::begin(scene.clone(), config, episode, sink);
-            slot.copied = Some(copied.map_err(|error| CopyError::Broken { copy, error })?);
+            slot.copied = Some(copied.map_err(|error| CopyFault::Broken(error).of(copy))?);
             slot.progress = CopyStatus::Running;
             Ok(())
         })
@@ -238,7 +242,7 @@ impl<S: CopySink> Copies<S> {
     /// What all agents observe, as they stand.
     ///
     /// # Errors
-    /// [`CopyError::NotRunning`] where a copy has no episode.
+    /// [`CopyFault::NotRunning`] where a copy has no episode.
     pub fn observe(&mut self, outcome: Outcome<'_>) -> Result<(), CopyError> {
         self.each(outcome, |_, _, _| Ok(()))
     }
@@ -246,13 +250,12 @@ impl<S: CopySink> Copies<S> {
     /// What the laws of all agents are told as they stand: a row for each of [`INPUTS`], copies × agents.
     ///
     /// # Errors
-    /// [`CopyError::NotRunning`] where a copy has no episode.
+    /// [`CopyFault::NotRunning`] where a copy has no episode.
     pub fn told(&self) -> Result<Vec<f64>, CopyError> {
         let agents = self.config.agents.len();
         let mut rows = vec![0.0; INPUTS.len() * self.slots.len() * agents];
         for (copy, slot) in self.slots.iter().enumerate() {
-            let why = "has not begun";
-            let copied = slot.copied.as_ref().ok_or(CopyError::NotRunning { copy, why })?;
+            let copied = slot.copied.as_ref().ok_or_else(|| CopyFault::NotRunning(BLANK).of(copy))?;
             for (place, agent) in self.config.agents.iter().enumerate() {
                 let at = copy * agents + place;
                 let columns = rows.iter_mut().skip(at).step_by(self.slots.len() * agents);
@@ -323,29 +326,19 @@ fn check(actions: &[f64], idle: &[bool], names: &[&str]) -> Result<(), CopyError
     let bad = |(index, value): &(usize, &f64)| !value.is_finite() && !idle[index / (ACTION * names.len())];
     match actions.iter().enumerate().find(bad) {
         None => Ok(()),
-        Some((index, value)) => Err(CopyError::NotFinite {
-            copy: index / (ACTION * names.len()),
-            robot: names[index / ACTION % names.len()].to_owned(),
-            what: ["acceleration", "turn rate"][index % ACTION],
-            value: *value,
-        }),
-    }
-}
-
-/// What is wrong with a copy whose number is not known here.
-enum CopyFault {
-    NotRunning(&'static str),
-    Broken(Error),
-}
-
-impl CopyFault {
-    fn of(self, copy: usize) -> CopyError {
-        match self {
-            Self::NotRunning(why) => CopyError::NotRunning { copy, why },
-            Self::Broken(error) => CopyError::Broken { copy, error },
+        Some((index, value)) => {
+            let fault = CopyFault::NotFinite {
+                robot: names[index / ACTION % names.len()].to_owned(),
+                what: ["acceleration", "turn rate"][index % ACTION],
+                value: *value,
+            };
+            Err(fault.of(index / (ACTION * names.len())))
         }
     }
 }
+
+/// What is the matter with a copy that has no episode.
+const BLANK: &str = "has not begun";
 
 impl<S: CopySink> CopySlot<S> {
     fn step(&mut self, config: &CopyConfig, actions: &[f64]) -> Result<(), CopyFault> {
@@ -356,13 +349,13 @@ impl<S: CopySink> CopySlot<S> {
             }
             (CopyStatus::TimeUp, _) => "has come to its end",
             (CopyStatus::Stopped, _) => "has stopped at a contact",
-            _ => "has not begun",
+            _ => BLANK,
         };
         Err(CopyFault::NotRunning(why))
     }
 
     fn write(&self, config: &CopyConfig, seen: &mut [f64], signals: &mut [f64]) -> Result<(), CopyFault> {
-        let copied = self.copied.as_ref().ok_or(CopyFault::NotRunning("has not begun"))?;
+        let copied = self.copied.as_ref().ok_or(CopyFault::NotRunning(BLANK))?;
         let columns = config.columns.len().max(1);
         let rows = seen.chunks_mut(columns).zip(signals.chunks_mut(SIGNALS.len()));
         for ((row, signals), (agent, touches)) in rows.zip(config.agents.iter().zip(&copied.touches)) {

@@ -83,3 +83,19 @@ fn a_copy_is_the_same_among_few_and_many() {
     assert_eq!((&many[..2], seen), (&few[..], also));
     assert_ne!(many[0], many[1]);
 }
+
+#[test]
+fn a_fault_is_told_with_its_copy_and_without() {
+    let scene = scene();
+    let mut copies =
+        Copies::new(scene.clone(), config(&scene, false, 0.0), 2, None, |_| DigestSink::default());
+    let told = copies.told().expect_err("no episode");
+    assert_eq!(told.to_string(), "copy 0: its episode has not begun: reset it first");
+    let mut actions = vec![0.0; 2 * 2 * ACTION];
+    actions[7] = f64::NAN;
+    let outcome = Outcome { observations: &mut [], signals: &mut [], progress: &mut [] };
+    let error = copies.step(&actions, &[false; 2], outcome).expect_err("no number");
+    assert_eq!((error.copy, matches!(error.fault, CopyFault::NotFinite { .. })), (1, true));
+    let fault = "the turn rate of `follower-2` is NaN: an action is a finite number, −1 to 1";
+    assert_eq!((error.fault.to_string(), error.to_string()), (fault.to_owned(), format!("copy 1: {fault}")));
+}

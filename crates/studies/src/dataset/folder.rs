@@ -81,9 +81,11 @@ mod tests {
         fs::write(at("dataset.json"), "{}").expect("written");
         fs::write(at("pictures/old.png"), "old").expect("written");
         fs::write(at("notes.txt"), "mine").expect("written");
-        assert!(
-            matches!(DatasetFolder::create(folder.path(), false), Err(Error::Output(error)) if error.to_string().contains("--force"))
-        );
+        let again = DatasetFolder::create(folder.path(), false).err();
+        assert!(matches!(
+            again,
+            Some(Error::Output(output::Error::Occupied { what: Some("a data set"), .. }))
+        ));
         drop(DatasetFolder::create(folder.path(), true).expect("replaced"));
         assert!(at("notes.txt").exists() && !at("pictures/old.png").exists() && !at("dataset.json").exists());
         let text = match DatasetFolder::create(folder.path(), true) {

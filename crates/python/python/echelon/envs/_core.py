@@ -38,7 +38,7 @@ class Step(NamedTuple):
 
 
 class Core:
-    """Copies of a scene with a task."""
+    """Copies of a scene with a task; `numbered` where errors say which copy they are of."""
 
     def __init__(
         self,
@@ -48,9 +48,10 @@ class Core:
         followers: str | Iterable[str] | None,
         render_mode: str | None,
         view: str | None,
-        size: Sequence[int] | None,
+        size: Sequence[int] | str | None,
         threads: int | None = None,
         adapter: str = "auto",
+        numbered: bool = False,
     ) -> None:
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f'render_mode is None or "rgb_array", not {render_mode!r}: there is no window')
@@ -76,8 +77,11 @@ class Core:
             self.scene, copies, agents=self.agents, columns=columns, scale=scale, residual=self.task.residual,
             samples=self.task.samples, scattered=scattered,
             scatter=(scatter.position, scatter.heading) if scatter else (0.0, 0.0),
-            drawn=render_mode is not None, threads=threads, adapter=adapter)
-        self._view, self._size = view, None if size is None else tuple(size)
+            drawn=render_mode is not None, threads=threads, adapter=adapter, numbered=numbered)
+        self._numbered = numbered
+        self._view, self._size = view, size
+        if render_mode is not None:
+            self.copies.prepare(view, size)
         self._render_mode = render_mode
         self._seeds: list[int | None] = [None] * copies
         self._numbers = [0] * copies
@@ -122,7 +126,7 @@ class Core:
         observations, numbers, self.progress = self.copies.step(self._actions(actions), idle)
         self.fresh &= idle
         signals = Signals(numbers, self.scale, self.interval)
-        rewards = self.task.rewards(signals)
+        rewards = self._rewards(signals)
         terminated = self.progress == _STOPPED
         if self.task.end_on_contact:
             terminated |= signals.touches.any(axis=-1)
@@ -134,23 +138,38 @@ class Core:
         self.ended = terminated | truncated
         return Step(observations.astype(self.dtype, copy=False), rewards, terminated, truncated, signals)
 
+    def _rewards(self, signals: Signals) -> NDArray[np.float64]:
+        rewards = self.task.rewards(signals)
+        if not np.isfinite(rewards).all():
+            copy, agent = (int(index) for index in np.argwhere(~np.isfinite(rewards))[0])
+            raise ValueError(f"{self._of(copy)}the reward of `{self.agents[agent]}` is {rewards[copy, agent]}: it has to be a number")
+        return rewards
+
+    def _of(self, copy: int) -> str:
+        """What an error of a copy begins with."""
+        return f"copy {copy}: " if self._numbered else ""
+
     def _actions(self, actions: Any) -> NDArray[np.float64]:
         shape = (self.count, len(self.agents), 2)
         try:
             given = np.ascontiguousarray(actions, dtype=np.float64)
             return given.reshape(shape)
         except (TypeError, ValueError):
-            found = np.shape(actions) if not isinstance(actions, Mapping) else "a dictionary"
-            raise ActionError(f"actions are {found}; they are numbers for {shape}: copies, agents, and acceleration and turn "
-                              "rate of each") from None
+            raise ActionError(f"actions are {_shape(actions)}; they are numbers of the shape {self._wanted()}: acceleration and "
+                              "turn rate of each follower") from None
+
+    def _wanted(self) -> tuple[int, ...]:
+        """The shape of actions, as whoever gives them sees it."""
+        numbers = 2 * len(self.agents)
+        return (self.count, numbers) if self._numbered else (numbers,)
 
     def _refuse(self, idle: NDArray[np.bool_]) -> None:
         for copy in np.flatnonzero(~idle).tolist():
             progress = int(self.progress[copy])
             if progress != _RUNNING:
-                raise ResetNeeded(f"the episode of copy {copy} {_WHY[progress]}")
+                raise ResetNeeded(f"{self._of(copy)}the episode {_WHY[progress]}")
             if self.ended[copy]:
-                raise ResetNeeded(f"the episode of copy {copy} {_WHY[2]}")
+                raise ResetNeeded(f"{self._of(copy)}the episode {_WHY[2]}")
 
     def why(self, step: Step, copy: int) -> str | None:
         """What ended the episode of a copy; None where it goes on."""
@@ -164,13 +183,22 @@ class Core:
     def render(self, copy: int) -> NDArray[np.uint8]:
         """A picture of a copy."""
         if not self.progress[copy]:
-            raise ResetNeeded(f"the episode of copy {copy} {_WHY[0]}")
+            raise ResetNeeded(f"{self._of(copy)}the episode {_WHY[0]}")
         return self.copies.render(copy, self._view, self._size)
 
     @property
     def fps(self) -> float:
         """Actions per second of simulation time."""
         return 1.0 / self.interval
+
+
+def _shape(actions: Any) -> str:
+    """What an error says of actions that do not fit."""
+    try:
+        return str(np.shape(actions)) if isinstance(actions, (np.ndarray, Sequence)) and not isinstance(actions, str) \
+            else type(actions).__name__
+    except ValueError:
+        return "rows of several lengths"
 
 
 def _agents(scene: Scene, followers: str | Iterable[str] | None) -> list[str]:

@@ -57,7 +57,7 @@ class FormationEnv(gymnasium.Env[NDArray[Any], NDArray[Any]]):
         followers: str | Iterable[str] | None = None,
         render_mode: str | None = None,
         view: str | None = None,
-        size: Sequence[int] | None = None,
+        size: Sequence[int] | str | None = None,
         adapter: str = "auto",
     ) -> None:
         self.core = Core(scene, task, 1, followers, render_mode, view, size, adapter=adapter)

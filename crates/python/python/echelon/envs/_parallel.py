@@ -26,7 +26,7 @@ class FormationParallelEnv(ParallelEnv[str, NDArray[Any], NDArray[Any]]):
     ----------
     scene, task, render_mode, view, size, adapter
         As for `FormationEnv`.
-    followers : iterable of str, optional
+    followers : str or iterable of str, optional
         Who are agents; all followers by default. The others keep the laws of the scene.
 
     Notes
@@ -43,10 +43,10 @@ class FormationParallelEnv(ParallelEnv[str, NDArray[Any], NDArray[Any]]):
         scene: Scene | str | os.PathLike[str] | Mapping[str, Any],
         task: Task | None = None,
         *,
-        followers: Iterable[str] | None = None,
+        followers: str | Iterable[str] | None = None,
         render_mode: str | None = None,
         view: str | None = None,
-        size: Sequence[int] | None = None,
+        size: Sequence[int] | str | None = None,
         adapter: str = "auto",
     ) -> None:
         self.core = Core(scene, task, 1, followers, render_mode, view, size, adapter=adapter)

@@ -51,11 +51,11 @@ class FormationVectorEnv(VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
         autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
         render_mode: str | None = None,
         view: str | None = None,
-        size: Sequence[int] | None = None,
+        size: Sequence[int] | str | None = None,
         threads: int | None = None,
         adapter: str = "auto",
     ) -> None:
-        self.core = Core(scene, task, num_envs, followers, render_mode, view, size, threads, adapter)
+        self.core = Core(scene, task, num_envs, followers, render_mode, view, size, threads, adapter, numbered=True)
         self.num_envs, self.render_mode = num_envs, render_mode
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {**self.metadata, "render_fps": self.core.fps, "autoreset_mode": self.autoreset_mode}
