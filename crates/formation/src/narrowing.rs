@@ -36,6 +36,8 @@ pub struct NarrowingState {
     free: f64,
     /// Time until it looks again, s.
     rest: f64,
+    /// Number of the place that a plan hands out; `None` where there is no plan.
+    planned: Option<u8>,
     /// From the set point to the place it is at.
     offset: Offset,
 }
@@ -122,7 +124,8 @@ impl NarrowingState {
             return;
         }
         self.rest += LOOKS;
-        let wanted = outlook.widest(rule, free);
+        // Whoever sees less room than a plan did keeps to what it sees.
+        let wanted = outlook.widest(rule, free).max(self.planned.unwrap_or(0));
         if wanted >= self.level {
             (self.level, self.free) = (wanted, 0.0);
             return;
@@ -131,6 +134,11 @@ impl NarrowingState {
         if self.free > rule.patience {
             self.level = wanted;
         }
+    }
+
+    /// A plan hands out how far to file in, 0 at the set point to 1 in the column; `None` where there is none any more.
+    pub fn hand_out(&mut self, narrowing: Option<f64>) {
+        self.planned = narrowing.map(|share| (share.clamp(0.0, 1.0) * f64::from(STEPS)).ceil() as u8);
     }
 
     /// Carries the place on over a period.

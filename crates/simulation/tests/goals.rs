@@ -69,14 +69,14 @@ fn what_has_no_way_is_told_by_the_names_of_the_scene() {
     let told = why_not("dead-end", &["groups.robot.count=7"]);
     assert!(told.contains("no way for 7 robots") && told.contains("there is one for 5 of them"), "{told}");
     assert!(told.contains("between `wall-"), "{told}");
-    let told =
-        why_not("maze-three", &["groups.robot.path.pose=[0, 0, 0]", "groups.robot.path.clearance=1.2"]);
-    assert!(told.contains("`robot-"), "{told}");
+    let told = why_not("maze-three", &["props.wall-1.from=[0.5, -2]", "props.wall-1.to=[0.5, 12]"]);
+    assert!(told.contains("`robot-1` starts too near to `wall-1`"), "{told}");
 }
 
 /// A room with a wall across it that nobody knows of.
 const CLOSED_ROOM: &str = r#"
 schema = 1
+title = "A closed room"
 [time]
 duration = 60.0
 [vehicle]

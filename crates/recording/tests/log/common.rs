@@ -7,8 +7,9 @@ use std::sync::Arc;
 use vocabulary::Judging;
 use vocabulary::{
     BarrierState, Body, Condition, Constraint, Contact, Edge, EdgeState, EntityId, EventKind, EventRecord,
-    FleetInfo, LawQuantity, LawState, MeasurementRecord, Mobility, Outcome, Placement, Prop, Refusal,
-    RobotInfo, RobotState, SafetyState, Shell, Snapshot, Solid, StepRecord, Terrain, TrackingState, Word,
+    FleetInfo, LawQuantity, LawState, MeasurementRecord, Mobility, Outcome, Placement, PlannedPath,
+    PlannedPoint, Pose, Prop, Refusal, RobotInfo, RobotState, SafetyState, Shell, Snapshot, Solid,
+    StepRecord, Terrain, TrackingState, Word,
 };
 
 /// Numbers without rule, special ones among them (SplitMix64).
@@ -73,6 +74,7 @@ pub(crate) fn fleet() -> FleetInfo {
         has_safety: true,
         has_laws: true,
         has_events: true,
+        has_plans: true,
         props: solids.into_iter().enumerate().map(prop).collect(),
         terrain: Some(Arc::new(Terrain {
             origin: [-1.0, 2.0],
@@ -174,7 +176,20 @@ pub(crate) fn step_record(fleet: &FleetInfo, k: u32, n: &mut Numbers) -> StepRec
         laws: (0..n.below(3)).map(|robot| law(robot, n)).collect(),
         leaders: vec![[None, Some(0)][n.below(2)], [None, Some(1), Some(2)][n.below(3)]],
         events: (0..n.below(3)).map(|_| event(n)).collect(),
+        plans: (0..n.below(2)).map(|_| Arc::new(plan(n))).collect(),
     }
+}
+
+fn plan(n: &mut Numbers) -> PlannedPath {
+    let robots: Vec<usize> = (0..=n.below(3)).collect();
+    let point = |n: &mut Numbers| PlannedPoint {
+        time: n.next(),
+        speed: n.next(),
+        narrowing: n.next(),
+        poses: robots.iter().map(|_| Pose { x: n.next(), y: n.next(), heading: n.next() }).collect(),
+    };
+    let points = (0..n.below(4)).map(|_| point(n)).collect();
+    PlannedPath { robots, points }
 }
 
 fn event(n: &mut Numbers) -> EventRecord {

@@ -40,6 +40,8 @@ pub struct Goals {
     vehicles: Arc<Vec<Vehicle>>,
     /// When it is time to look round again, s.
     looks: f64,
+    /// How many plans have been made since the run began.
+    version: u64,
     /// Plans that no record has yet.
     pub(crate) told: Vec<Arc<PlannedPath>>,
 }
@@ -133,6 +135,7 @@ pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Go
             knows: surroundings.things.iter().map(|thing| thing.known).collect(),
             places: surroundings.things.iter().map(|thing| thing.pose).collect(),
             replans: false,
+            version: 0,
             reached: 0,
             since: 0,
         };

@@ -42,6 +42,7 @@ pub(crate) fn navigate(run: &mut Simulation, time: f64) {
         let mut navigator = run.goals.navigators[index].clone();
         let version = run.goals.version;
         look(run, &mut navigator, time);
+        hand_out(run, &navigator, time);
         navigator.version = version;
         run.goals.navigators[index] = navigator;
     }
@@ -97,6 +98,18 @@ fn look(run: &mut Simulation, navigator: &mut Navigator, time: f64) {
             }
         }
         _ => {}
+    }
+}
+
+/// Hands out to followers how far they are to file in.
+fn hand_out(run: &mut Simulation, navigator: &Navigator, time: f64) {
+    let column = navigator.motion.levels.saturating_sub(1).max(1) as f64;
+    let level = navigator.motion.point_at(time).map(|point| point.early_level / column);
+    let level = level.filter(|_| navigator.phase != Phase::Stays);
+    for robot in &navigator.motion.robots {
+        for edge in run.formation.graph().edges_of(*robot) {
+            run.state.memories[*edge].narrowing.hand_out(level);
+        }
     }
 }
 
@@ -382,13 +395,7 @@ fn take(run: &mut Simulation, navigator: &Navigator, start: &PlanStart, time: f6
 }
 
 /// A formation comes to a stand on its way, before it meets something if that is possible, and waits.
-fn halt(
-    run: &mut Simulation,
-    navigator: &mut Navigator,
-    convoy: &Convoy,
-    meeting: Option<Meeting>,
-    time: f64,
-) {
+fn halt(run: &mut Simulation, navigator: &mut Navigator, meeting: Option<Meeting>, time: f64) {
     navigator.phase = Phase::Waits { since: time, tried: time };
     let vehicles = &run.goals.vehicles;
     let most = vehicles[navigator.lead].limits().acceleration_max;
