@@ -118,8 +118,8 @@ keys! {
         speed: f64 = TRAVEL_SPEED, or(0.8);
         /// How it gains speed and brakes, m/s².
         acceleration: f64 = TRAVEL_ACCELERATION, or(0.3);
-        /// How far all robots stay off what stands there, m.
-        clearance: f64 = CLEARANCE, or(0.25);
+        /// How far all robots stay off what stands there, m; what their safety filters keep free if left out, at least 0.25.
+        clearance: f64 = CLEARANCE, optional;
         /// Of several formations those of higher priority plan first, and the others yield to them.
         priority: u32 = integer::<u32>(0, 1000), or(0);
         /// How long it waits for a way that is not there, s.
@@ -140,8 +140,8 @@ keys! {
         speed: f64 = TRAVEL_SPEED, or(0.8);
         /// How it gains speed and brakes, m/s².
         acceleration: f64 = TRAVEL_ACCELERATION, or(0.3);
-        /// How far all robots stay off what stands there, m.
-        clearance: f64 = CLEARANCE, or(0.25);
+        /// How far all robots stay off what stands there, m; what their safety filters keep free if left out, at least 0.25.
+        clearance: f64 = CLEARANCE, optional;
         /// Of several formations those of higher priority plan first, and the others yield to them.
         priority: u32 = integer::<u32>(0, 1000), or(0);
         /// How long it waits for a way that is not there, s.
@@ -297,14 +297,26 @@ fn from_table(keys: TableKeys, node: &Node, reporter: &mut Reporter) -> Option<P
 fn goal(keys: GoalKeys, _: &Node, _: &mut Reporter) -> Option<Path> {
     let (speed, acceleration) = (keys.speed?.value, keys.acceleration?.value);
     let (priority, patience) = (keys.priority?.value, keys.patience?.value);
-    let travel = Travel { speed, acceleration, clearance: keys.clearance?.value, priority, patience };
+    let travel = Travel {
+        speed,
+        acceleration,
+        clearance: keys.clearance.map(|found| found.value),
+        priority,
+        patience,
+    };
     Some(Path::Goal { pose: keys.pose?.value, travel })
 }
 
 fn tour(keys: TourKeys, _: &Node, _: &mut Reporter) -> Option<Path> {
     let (speed, acceleration) = (keys.speed?.value, keys.acceleration?.value);
     let (priority, patience) = (keys.priority?.value, keys.patience?.value);
-    let travel = Travel { speed, acceleration, clearance: keys.clearance?.value, priority, patience };
+    let travel = Travel {
+        speed,
+        acceleration,
+        clearance: keys.clearance.map(|found| found.value),
+        priority,
+        patience,
+    };
     let (goals, pause) = (keys.goals?.value, keys.pause?.value);
     Some(Path::Tour { goals, pause, rounds: keys.rounds?.value, travel })
 }

@@ -107,8 +107,8 @@ pub struct Travel {
     pub speed: f64,
     /// How it gains speed and brakes, m/s².
     pub acceleration: f64,
-    /// How far all robots stay off what is known to stand there, m.
-    pub clearance: f64,
+    /// How far all robots stay off what is known to stand there, m; what their safety filters keep free without it.
+    pub clearance: Option<f64>,
     /// Of several formations those of higher priority plan first.
     pub priority: u32,
     /// How long it waits for a way that is not there, s.

@@ -38,6 +38,8 @@ pub struct Goals {
     navigators: Vec<Navigator>,
     surroundings: Arc<Surroundings>,
     vehicles: Arc<Vec<Vehicle>>,
+    /// What the safety filter of each robot keeps free beside its body, m.
+    rooms: Arc<Vec<f64>>,
     /// When it is time to look round again, s.
     looks: f64,
     /// How many plans have been made since the run began.
@@ -106,6 +108,7 @@ pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Go
     };
     let surroundings = Surroundings::of(scene).map_err(|error| invalid(asked[0].0, &error))?;
     let vehicles: Vec<Vehicle> = scene.robots.iter().map(|robot| robot.vehicle.clone()).collect();
+    let rooms: Vec<f64> = scene.robots.iter().map(room_beside).collect();
     let standing = surroundings.standing_at_first();
     let mut moving = surroundings.moving(|index| surroundings.things[index].known);
     let mut navigators: Vec<Navigator> = vec![];
@@ -115,17 +118,20 @@ pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Go
         let limits = convoy.limits(&vehicles, &wish.travel);
         let task = Task { model: &model, limits, standing: &standing, moving: &moving };
         let departure = Departure { start: PlanStart::at(scene.robots[lead].pose), held: None, time: 0.0 };
-        let parts = wish.parts(&task, &departure, 0, wish.travel.clearance).map_err(|(goal, error)| {
-            let name = |whose: EntityId| match whose {
-                EntityId::Robot(index) => robot_of(index),
-                EntityId::Prop(index) => scene.props[index].name.clone(),
-                EntityId::Ground => "the ground".to_owned(),
-            };
-            let moving: Vec<EntityId> = moving.iter().map(|(whose, _)| *whose).collect();
-            let names = Names { name: &name, robots: &convoy.robots, standing: &standing, moving: &moving };
-            let at = if wish.goals.len() > 1 { format!("to goal {}: ", goal + 1) } else { String::new() };
-            BuildError::Plan { robot: robot_of(lead), why: format!("{at}{}", names.why(&error)) }
-        })?;
+        let parts = wish.parts(&task, &departure, 0, wish.clearance(&rooms, &convoy.robots)).map_err(
+            |(goal, error)| {
+                let name = |whose: EntityId| match whose {
+                    EntityId::Robot(index) => robot_of(index),
+                    EntityId::Prop(index) => scene.props[index].name.clone(),
+                    EntityId::Ground => "the ground".to_owned(),
+                };
+                let moving: Vec<EntityId> = moving.iter().map(|(whose, _)| *whose).collect();
+                let names =
+                    Names { name: &name, robots: &convoy.robots, standing: &standing, moving: &moving };
+                let at = if wish.goals.len() > 1 { format!("to goal {}: ", goal + 1) } else { String::new() };
+                BuildError::Plan { robot: robot_of(lead), why: format!("{at}{}", names.why(&error)) }
+            },
+        )?;
         let navigator = Navigator {
             lead,
             asked: lead,
@@ -149,8 +155,20 @@ pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Go
         navigators,
         surroundings: Arc::new(surroundings),
         vehicles: Arc::new(vehicles),
+        rooms: Arc::new(rooms),
         looks: 0.0,
     })
+}
+
+/// What the safety filter of a robot keeps free beside its body, m: it takes the body for a circle, and keeps that of the point
+/// ahead; 0 without a filter.
+fn room_beside(robot: &Robot) -> f64 {
+    let (body, safety) = (robot.vehicle.body(), &robot.safety);
+    if !safety.acts(matches!(robot.role, Role::Lead { .. })) {
+        return 0.0;
+    }
+    let ahead = safety.point_ahead_of(robot.vehicle.kind, body.length);
+    body.radius() + safety.margin_of(body.length) + ahead - 0.5 * body.width
 }
 
 /// What lead robots with goals want, by their numbers.

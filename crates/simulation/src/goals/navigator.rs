@@ -81,6 +81,9 @@ pub(super) struct Departure {
     pub(super) time: f64,
 }
 
+/// Robots whose filters keep less free stay off things by this, m.
+const LEAST_CLEARANCE: f64 = 0.25;
+
 impl Wish {
     /// Plans to all goals from number `next` on.
     ///
@@ -115,6 +118,12 @@ impl Wish {
             parts.push(PlannedPart { begins, goal: Some(number), until: f64::INFINITY, plan });
         }
         Ok(parts)
+    }
+
+    /// How far robots stay off things, m.
+    pub(super) fn clearance(&self, rooms: &[f64], robots: &[usize]) -> f64 {
+        let kept = || robots.iter().map(|robot| rooms[*robot]).fold(LEAST_CLEARANCE, f64::max);
+        self.travel.clearance.unwrap_or_else(kept)
     }
 
     fn map(&self, task: &Task<'_>, departure: &Departure, clearance: f64) -> Result<Map, InputError> {

@@ -266,7 +266,8 @@ impl Found {
         if model.robots() != navigator.motion.robots.len() {
             return None;
         }
-        let clearance = KEPT * navigator.wish.travel.clearance;
+        let robots = &navigator.motion.robots;
+        let clearance = KEPT * navigator.wish.clearance(&run.goals.rooms, robots);
         let mut whose = vec![];
         let mut things = vec![];
         for (owner, body) in &self.new {
@@ -311,9 +312,10 @@ fn plan_again(
     let task = Task { model: &model, limits, standing: &found.standing, moving: &found.moving };
     let departure = departure(run, navigator, convoy, &model, &limits, time);
     let wish = navigator.wish.clone();
+    let clearance = wish.clearance(&run.goals.rooms, &convoy.robots);
     let mut last = None;
     for share in BEGINS_WITH {
-        match wish.parts(&task, &departure, navigator.reached, share * wish.travel.clearance) {
+        match wish.parts(&task, &departure, navigator.reached, share * clearance) {
             Ok(parts) => {
                 let (robots, levels, new) = (convoy.robots.clone(), model.levels(), parts.len());
                 let motion = PlannedMotion { robots, levels, ..navigator.motion.then(departure.time, parts) };
