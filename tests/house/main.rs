@@ -48,7 +48,10 @@ const ARROWS: [(&str, &[&str]); 23] = [
     // Its tests, examples and benches write pictures and films with `film`.
     ("rendering", &["vocabulary", "film"]),
     ("figures", &["vocabulary"]),
-    ("simulation", &["vocabulary", "laws", "scene", "formation", "safety", "world", "perception"]),
+    (
+        "simulation",
+        &["vocabulary", "laws", "scene", "formation", "planning", "safety", "world", "perception"],
+    ),
     ("digests", &["vocabulary", "metrics", "scene", "simulation"]),
     (
         "studies",

@@ -55,8 +55,12 @@ fn line(way: &PlannedWay) -> String {
         1.0 => "down to its column".to_owned(),
         share => format!("narrowed by {:.0} % at most", 100.0 * share),
     };
+    let yields = match way.yields_to.as_slice() {
+        [] => String::new(),
+        leads => format!("; yields to {}", leads.join(" and ")),
+    };
     format!(
-        "{} {}: {:.1} m in {:.1} s from {:.1} s on; {}, {shape}; {} swept",
+        "{} {}: {:.1} m in {:.1} s from {:.1} s on; {}, {shape}{yields}; {} swept",
         way.lead,
         way.goal.map_or_else(|| "to a stand".to_owned(), |goal| format!("to goal {goal}")),
         way.length,
@@ -116,7 +120,7 @@ fn picture(run: &SceneRun, ways: &[PlannedWay]) -> Plan {
                     .collect(),
                 colour: if k == 0 { [0.1; 3] } else { colour(robot) },
                 stroke: Stroke::Solid,
-                faint: k > 0,
+                faint: false,
             });
         }
     }

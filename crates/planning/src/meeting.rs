@@ -43,7 +43,7 @@ impl MotionPlan {
             let span = b.time - a.time;
             let acceleration = if span > 0.0 { (b.speed.abs() - a.speed.abs()) / span } else { 0.0 };
             let stretch =
-                Stretch { way: a.way, speed: a.speed.abs(), acceleration, time: a.time, lasts: span };
+                TimedStretch { way: a.way, speed: a.speed.abs(), acceleration, time: a.time, lasts: span };
             traffic.meets(&stretch, &mut cursor)
         })
     }
@@ -61,7 +61,7 @@ impl MotionPlan {
 
 /// A stretch of the way that is driven with one acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Stretch {
+pub(crate) struct TimedStretch {
     /// Way at which it begins, m.
     pub way: f64,
     /// m/s there.
@@ -116,7 +116,7 @@ impl<'a> Traffic<'a> {
     }
 
     /// The first meeting on a stretch. `cursor` is a place among the points from which the way is looked for.
-    pub(crate) fn meets(&self, stretch: &Stretch, cursor: &mut usize) -> Option<Meeting> {
+    pub(crate) fn meets(&self, stretch: &TimedStretch, cursor: &mut usize) -> Option<Meeting> {
         let lead = |way: f64, cursor: &mut usize| {
             let (a, b, share) = self.around_way(way, cursor)?;
             Some([a.pose.x + share * (b.pose.x - a.pose.x), a.pose.y + share * (b.pose.y - a.pose.y)])

@@ -5,7 +5,7 @@
 //! of a T²/2 of the way with a multiple of a T of speed, and what can be reached is a graph. A* finds the earliest arrival in
 //! it; the estimate is the time that the way takes where nothing moves.
 
-use crate::meeting::{Meeting, Stretch, Traffic};
+use crate::meeting::{Meeting, TimedStretch, Traffic};
 use crate::mission::PlanRequest;
 use crate::moving::MovingThing;
 use crate::plan::{MotionPlan, PlanPoint};
@@ -112,7 +112,7 @@ impl MotionPlan {
             // Wheels turn where the lead stands.
             time += part[0].time - stood;
             stood = part[part.len() - 1].time;
-            let lattice = Lattice::new(part, request).ok_or(Unavoidable(meeting))?;
+            let lattice = SpeedLattice::new(part, request).ok_or(Unavoidable(meeting))?;
             let stretches = lattice.search(part, &traffic, time).ok_or(Unavoidable(meeting))?;
             time = stretches.last().map_or(time, |last| last.time + last.lasts);
             points.extend(at_the_times_of(part, &stretches));
@@ -142,7 +142,7 @@ const FITTINGS: usize = 8;
 const UNITS_MOST: f64 = 1e6;
 
 /// What can be reached along a part of the way.
-struct Lattice {
+struct SpeedLattice {
     /// Step in time, s.
     step: f64,
     /// Unit of the way, m: a T²/2.
@@ -167,7 +167,7 @@ struct Lattice {
 /// Number of a step in time, units of way, units of speed.
 type State = (u32, u32, u32);
 
-impl Lattice {
+impl SpeedLattice {
     fn new(part: &[PlanPoint], request: &PlanRequest<'_>) -> Option<Self> {
         let (first, last) = (part.first()?, part.last()?);
         let limits = &request.limits;
@@ -213,10 +213,10 @@ impl Lattice {
     }
 
     /// The earliest arrival that meets nothing, from `begins` s of the plan on.
-    fn search(&self, part: &[PlanPoint], traffic: &Traffic<'_>, begins: f64) -> Option<Vec<Stretch>> {
+    fn search(&self, part: &[PlanPoint], traffic: &Traffic<'_>, begins: f64) -> Option<Vec<TimedStretch>> {
         let from = part.first()?.way;
         let low = self.start_units as f64 * self.speed;
-        let lead_in = Stretch {
+        let lead_in = TimedStretch {
             way: from,
             speed: self.start,
             acceleration: if self.lead_in > 0.0 { -self.braking } else { 0.0 },
@@ -229,7 +229,7 @@ impl Lattice {
         }
         let begins = begins + lead_in.lasts;
         let horizon = ((self.left[0] + WAITS_MOST) / self.step).ceil() as u32;
-        let stretch = |(m, n, k): State, change: i32| Stretch {
+        let stretch = |(m, n, k): State, change: i32| TimedStretch {
             way: from + self.lead_in + self.unit * f64::from(n),
             speed: self.speed * f64::from(k),
             acceleration: f64::from(change) * self.speed / self.step,
@@ -320,7 +320,7 @@ fn profile(part: &[PlanPoint], way: f64) -> (f64, f64) {
 }
 
 /// The points of a part with the times and speeds of stretches, and points where stretches begin and end.
-fn at_the_times_of(part: &[PlanPoint], stretches: &[Stretch]) -> Vec<PlanPoint> {
+fn at_the_times_of(part: &[PlanPoint], stretches: &[TimedStretch]) -> Vec<PlanPoint> {
     let side = part.iter().map(|point| point.speed).find(|speed| *speed != 0.0).unwrap_or(1.0).signum();
     let mut timed = vec![];
     let mut next = 0;

@@ -8,11 +8,12 @@ mod stage;
 
 use rendering::{AdapterChoice, Error, Gpu, PictureSpec, Renderer, Style, ViewLayout, Viewpoint};
 use stage::{Path, Play};
+use std::sync::Arc;
 use std::sync::OnceLock;
 use vocabulary::math;
 use vocabulary::{
-    BarrierState, Constraint, Contact, EntityId, EventKind, EventRecord, Picture, Pose, SafetyState,
-    StepRecord,
+    BarrierState, Constraint, Contact, EntityId, EventKind, EventRecord, Picture, PlannedPath, PlannedPoint,
+    Pose, SafetyState, StepRecord,
 };
 
 const SIZE: (u32, u32) = (640, 360);
@@ -156,6 +157,14 @@ fn every_element_can_be_switched_off() {
             BarrierState { constraint: Constraint::Robot(0), value: 0.2, slack: 0.0, direction: 1.0 };
         record.safety = vec![SafetyState { robot: 1, barriers: vec![barrier], ..SafetyState::default() }];
         record.events = vec![EventRecord::done(EventKind::Follow, 1, Some(0))];
+        let pose = record.snapshot.robots[0].motion.pose;
+        let point = |time: f64| PlannedPoint {
+            time,
+            poses: vec![Pose { x: pose.x + time, ..pose }],
+            ..PlannedPoint::default()
+        };
+        let points = vec![point(2.0), point(3.0), point(4.0)];
+        record.plans = vec![Arc::new(PlannedPath { robots: vec![0], points })];
         trail.push(&record);
         renderer
             .draw(PictureSpec::new(&trail, &record, &ViewLayout::single(Viewpoint::Snake), style))

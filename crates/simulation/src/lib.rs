@@ -35,7 +35,7 @@ pub use error::BuildError;
 pub use events::{EventAction, EventPlan, HandOverRules, Holds, PlannedEvent, Recovery, Trigger};
 pub use fault::{Fault, NotFinite};
 pub use gates::{Gate, gates, narrowest};
-pub use goals::{Goals, PlannedMotion, PlannedPart, Wish};
+pub use goals::{GoalWish, Goals, PlannedMotion, PlannedPart};
 pub use in_line::in_line;
 pub use parameters::{ParameterSet, ScheduledChange};
 pub use planning::{MotionPlan, PlanPoint};

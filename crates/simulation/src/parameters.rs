@@ -1,6 +1,6 @@
 //! The parameters that may change during a run: laws, set points, limits. All others are fixed.
 
-use crate::goals::Wish;
+use crate::goals::GoalWish;
 use crate::setup::Setup;
 use formation::EdgeLaw;
 use std::collections::VecDeque;
@@ -17,7 +17,7 @@ pub struct ParameterSet {
     /// Barriers, per robot; `None` where its filter is off.
     pub filters: Vec<Option<safety::Parameters>>,
     /// What lead robots with goals want, by their numbers.
-    pub wishes: Vec<(usize, Arc<Wish>)>,
+    pub wishes: Vec<(usize, Arc<GoalWish>)>,
 }
 
 /// A set of parameters, and from when on it holds.

@@ -13,6 +13,8 @@ pub struct PlannedWay {
     pub goal: Option<usize>,
     /// Names of the robots that it is planned for, the lead first.
     pub robots: Vec<String>,
+    /// Leads that planned before, whose robots it keeps away from.
+    pub yields_to: Vec<String>,
     /// When the lead sets out, s.
     pub begins: f64,
     /// How long it takes, s.
@@ -51,6 +53,7 @@ pub struct PlannedRow {
 pub fn plans(run: &SceneRun) -> Vec<PlannedWay> {
     let names = &run.simulation.fleet().robots;
     let mut ways = vec![];
+    let mut before: Vec<String> = vec![];
     for (lead, motion) in run.simulation.goals().motions() {
         let robots: Vec<String> = motion.robots.iter().map(|robot| names[*robot].name.clone()).collect();
         let column = motion.levels.saturating_sub(1).max(1) as f64;
@@ -69,6 +72,7 @@ pub fn plans(run: &SceneRun) -> Vec<PlannedWay> {
                 lead: names[lead].name.clone(),
                 goal: part.goal.map(|goal| goal + 1),
                 robots: robots.clone(),
+                yields_to: before.clone(),
                 begins,
                 duration: plan.duration(),
                 length: plan.length(),
@@ -78,6 +82,7 @@ pub fn plans(run: &SceneRun) -> Vec<PlannedWay> {
                 rows,
             });
         }
+        before.push(names[lead].name.clone());
     }
     ways
 }

@@ -2,41 +2,41 @@
 //! where something is found in the way.
 //!
 //! ```text
-//! convoy          a lead and its followers, as planning sees them
-//! surroundings    what stands and moves around them
+//! goal_formation  a lead and its followers, as planning sees them
+//! known_things    what stands and moves around them
 //! navigator       one lead: its goals, its plan, what it is up to
 //! motion          the plan as a motion
 //! replan          what is found on the way, and what is done about it
-//! reasons         why there is no way, in the names of the scene
+//! plan_names      why there is no way, in the names of the scene
 //! ```
 
-mod convoy;
+mod goal_formation;
+mod known_things;
 mod motion;
 mod navigator;
-mod reasons;
+mod plan_names;
 mod replan;
-mod surroundings;
 
 pub use motion::{PlannedMotion, PlannedPart};
-pub use navigator::Wish;
+pub use navigator::GoalWish;
 pub(crate) use replan::navigate;
 
 use crate::error::BuildError;
-use convoy::Convoy;
 use formation::{EdgeLaw, Graph};
-use navigator::{Departure, Navigator, Phase, Task};
+use goal_formation::GoalFormation;
+use known_things::KnownThings;
+use navigator::{Departure, Navigator, Phase, PlanTask};
+use plan_names::PlanNames;
 use planning::{PlanGoal, PlanStart};
-use reasons::Names;
 use scene::{Path, Robot, Role, Scene, Vehicle};
 use std::sync::Arc;
-use surroundings::Surroundings;
 use vocabulary::{EntityId, PlannedPath};
 
 /// All lead robots of a run that have goals.
 #[derive(Debug, Clone, Default)]
 pub struct Goals {
     navigators: Vec<Navigator>,
-    surroundings: Arc<Surroundings>,
+    surroundings: Arc<KnownThings>,
     vehicles: Arc<Vec<Vehicle>>,
     /// What the safety filter of each robot keeps free beside its body, m.
     rooms: Arc<Vec<f64>>,
@@ -61,12 +61,12 @@ impl Goals {
     }
 
     /// What all of them want.
-    pub(crate) fn wishes(&self) -> Vec<(usize, Arc<Wish>)> {
+    pub(crate) fn wishes(&self) -> Vec<(usize, Arc<GoalWish>)> {
         self.navigators.iter().map(|navigator| (navigator.lead, navigator.wish.clone())).collect()
     }
 
     /// They want something else from now on, and look for a way at the next sample.
-    pub(crate) fn adopt(&mut self, wishes: &[(usize, Arc<Wish>)]) {
+    pub(crate) fn adopt(&mut self, wishes: &[(usize, Arc<GoalWish>)]) {
         for (lead, wish) in wishes {
             let Some(navigator) = self.navigators.iter_mut().find(|own| own.asked == *lead) else { continue };
             if navigator.wish != *wish {
@@ -87,7 +87,7 @@ impl Goals {
 /// # Errors
 /// There is no way to a goal: with the reason, and with what there is a way for.
 pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Goals, BuildError> {
-    let mut asked: Vec<(usize, Wish)> = scene
+    let mut asked: Vec<(usize, GoalWish)> = scene
         .robots
         .iter()
         .enumerate()
@@ -106,17 +106,17 @@ pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Go
         robot: robot_of(lead),
         why: error.to_string(),
     };
-    let surroundings = Surroundings::of(scene).map_err(|error| invalid(asked[0].0, &error))?;
+    let surroundings = KnownThings::of(scene).map_err(|error| invalid(asked[0].0, &error))?;
     let vehicles: Vec<Vehicle> = scene.robots.iter().map(|robot| robot.vehicle.clone()).collect();
     let rooms: Vec<f64> = scene.robots.iter().map(room_beside).collect();
     let standing = surroundings.standing_at_first();
     let mut moving = surroundings.moving(|index| surroundings.things[index].known);
     let mut navigators: Vec<Navigator> = vec![];
     for (lead, wish) in asked {
-        let convoy = Convoy::of(graph, laws, lead, 0.0);
+        let convoy = GoalFormation::of(graph, laws, lead, 0.0);
         let model = convoy.model(&vehicles).map_err(|error| invalid(lead, &error))?;
         let limits = convoy.limits(&vehicles, &wish.travel);
-        let task = Task { model: &model, limits, standing: &standing, moving: &moving };
+        let task = PlanTask { model: &model, limits, standing: &standing, moving: &moving };
         let departure = Departure { start: PlanStart::at(scene.robots[lead].pose), held: None, time: 0.0 };
         let parts = wish.parts(&task, &departure, 0, wish.clearance(&rooms, &convoy.robots)).map_err(
             |(goal, error)| {
@@ -127,7 +127,7 @@ pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Go
                 };
                 let moving: Vec<EntityId> = moving.iter().map(|(whose, _)| *whose).collect();
                 let names =
-                    Names { name: &name, robots: &convoy.robots, standing: &standing, moving: &moving };
+                    PlanNames { name: &name, robots: &convoy.robots, standing: &standing, moving: &moving };
                 let at = if wish.goals.len() > 1 { format!("to goal {}: ", goal + 1) } else { String::new() };
                 BuildError::Plan { robot: robot_of(lead), why: format!("{at}{}", names.why(&error)) }
             },
@@ -172,7 +172,7 @@ fn room_beside(robot: &Robot) -> f64 {
 }
 
 /// What lead robots with goals want, by their numbers.
-pub(crate) fn wishes(robots: &[Robot]) -> Vec<(usize, Arc<Wish>)> {
+pub(crate) fn wishes(robots: &[Robot]) -> Vec<(usize, Arc<GoalWish>)> {
     let of = |(lead, robot): (usize, &Robot)| match &robot.role {
         Role::Lead { path } => Some((lead, Arc::new(wish(path)?))),
         Role::Follow(_) => None,
@@ -181,7 +181,7 @@ pub(crate) fn wishes(robots: &[Robot]) -> Vec<(usize, Arc<Wish>)> {
 }
 
 /// What a path asks for; `None` where it says how to go instead of where.
-fn wish(path: &Path) -> Option<Wish> {
+fn wish(path: &Path) -> Option<GoalWish> {
     let (goals, pause, rounds, travel) = match path {
         Path::Goal { pose, travel } => (std::slice::from_ref(pose), 0.0, 1, travel),
         Path::Tour { goals, pause, rounds, travel } => (goals.as_slice(), *pause, *rounds, travel),
@@ -191,5 +191,5 @@ fn wish(path: &Path) -> Option<Wish> {
         .flat_map(|_| goals)
         .map(|goal| PlanGoal { heading: goal.heading, ..PlanGoal::to(goal.position) })
         .collect();
-    Some(Wish { goals, pause, travel: *travel })
+    Some(GoalWish { goals, pause, travel: *travel })
 }

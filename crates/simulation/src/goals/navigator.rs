@@ -1,8 +1,8 @@
 //! One lead robot with goals: what it wants, its plan, and what it is up to.
 
-use super::convoy::shape;
+use super::goal_formation::shape;
+use super::known_things::map;
 use super::motion::{PlannedMotion, PlannedPart};
-use super::surroundings::map;
 use planning::{
     Convex, FormationModel, InputError, Map, Mission, MovingThing, PlanError, PlanGoal, PlanRequest,
     PlanStart, TrackPoint, TravelLimits, plan_among,
@@ -18,7 +18,7 @@ pub(crate) struct Navigator {
     pub(super) lead: usize,
     /// Number of the robot whose goals they were at first: another leads in its place where that has failed.
     pub(super) asked: usize,
-    pub(super) wish: Arc<Wish>,
+    pub(super) wish: Arc<GoalWish>,
     /// How it gets there.
     pub(super) motion: Arc<PlannedMotion>,
     pub(super) phase: Phase,
@@ -39,7 +39,7 @@ pub(crate) struct Navigator {
 
 /// Where a lead robot wants to go, and how.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wish {
+pub struct GoalWish {
     /// All of its goals, those of a tour once a round.
     pub goals: Vec<PlanGoal>,
     /// How long it stays at each, s.
@@ -65,7 +65,7 @@ pub(super) enum Phase {
 }
 
 /// A convoy and what is known of its surroundings: what a plan is made of.
-pub(super) struct Task<'a> {
+pub(super) struct PlanTask<'a> {
     pub(super) model: &'a FormationModel,
     pub(super) limits: TravelLimits,
     pub(super) standing: &'a [(EntityId, Convex)],
@@ -84,14 +84,14 @@ pub(super) struct Departure {
 /// Robots whose filters keep less free stay off things by this, m.
 const LEAST_CLEARANCE: f64 = 0.25;
 
-impl Wish {
+impl GoalWish {
     /// Plans to all goals from number `next` on.
     ///
     /// # Errors
     /// The number of the goal that there is no way to, and why.
     pub(super) fn parts(
         &self,
-        task: &Task<'_>,
+        task: &PlanTask<'_>,
         departure: &Departure,
         next: usize,
         clearance: f64,
@@ -126,7 +126,7 @@ impl Wish {
         self.travel.clearance.unwrap_or_else(kept)
     }
 
-    fn map(&self, task: &Task<'_>, departure: &Departure, clearance: f64) -> Result<Map, InputError> {
+    fn map(&self, task: &PlanTask<'_>, departure: &Departure, clearance: f64) -> Result<Map, InputError> {
         let start = departure.start.pose;
         let places = [[start.x, start.y]].into_iter().chain(self.goals.iter().map(|goal| goal.position));
         map(task.standing, places, task.model, clearance)
@@ -135,7 +135,7 @@ impl Wish {
 
 impl Navigator {
     /// It wants something else from now on.
-    pub(super) fn wants(&mut self, wish: Arc<Wish>) {
+    pub(super) fn wants(&mut self, wish: Arc<GoalWish>) {
         // A tour of as many goals goes on where it was.
         let kept = self.wish.goals.len() == wish.goals.len() && wish.goals.len() > 1;
         self.reached = if kept { self.reached.min(wish.goals.len() - 1) } else { 0 };

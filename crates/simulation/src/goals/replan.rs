@@ -1,10 +1,10 @@
 //! What lead robots with goals find on their way, and what they do about it: they stop in time, take another way, or wait for
 //! one, but not for ever.
 
-use super::convoy::{Convoy, shape};
+use super::goal_formation::{GoalFormation, shape};
+use super::known_things::above;
 use super::motion::{PlannedMotion, PlannedPart};
-use super::navigator::{Departure, Navigator, Phase, Task};
-use super::surroundings::above;
+use super::navigator::{Departure, Navigator, Phase, PlanTask};
 use crate::events::let_stand;
 use crate::simulation::Simulation;
 use planning::{
@@ -57,8 +57,8 @@ fn look(run: &mut Simulation, navigator: &mut Navigator, time: f64) {
         return;
     };
     arrive(run, navigator, time);
-    let convoy = Convoy::of(run.formation.graph(), run.formation.laws(), navigator.lead, time);
-    let found = Found::by(run, navigator, &convoy, time);
+    let convoy = GoalFormation::of(run.formation.graph(), run.formation.laws(), navigator.lead, time);
+    let found = Sightings::by(run, navigator, &convoy, time);
     let others = |robots: &[usize]| {
         let mut robots = robots.to_vec();
         robots.sort_unstable();
@@ -141,7 +141,7 @@ fn arrive(run: &mut Simulation, navigator: &mut Navigator, time: f64) {
 }
 
 /// What a formation knows of what is around it.
-struct Found {
+struct Sightings {
     standing: Vec<(EntityId, Convex)>,
     moving: Vec<(EntityId, MovingThing)>,
     /// What plans did not know of before the run, or not there.
@@ -152,9 +152,9 @@ struct Found {
     changed: Vec<(EntityId, MovingThing)>,
 }
 
-impl Found {
+impl Sightings {
     /// Looks round with the proximity sensors of all robots of a formation.
-    fn by(run: &Simulation, navigator: &mut Navigator, convoy: &Convoy, time: f64) -> Self {
+    fn by(run: &Simulation, navigator: &mut Navigator, convoy: &GoalFormation, time: f64) -> Self {
         let snapshot = run.snapshot();
         let place = |robot: usize| snapshot.robots[robot].motion.pose;
         let senses = |body: &Convex| {
@@ -205,7 +205,7 @@ impl Found {
         &mut self,
         run: &Simulation,
         navigator: &Navigator,
-        convoy: &Convoy,
+        convoy: &GoalFormation,
         senses: &dyn Fn(&Convex) -> bool,
         time: f64,
     ) {
@@ -255,7 +255,7 @@ impl Found {
         &self,
         run: &Simulation,
         navigator: &Navigator,
-        convoy: &Convoy,
+        convoy: &GoalFormation,
         time: f64,
     ) -> Option<(EntityId, Meeting)> {
         if self.new.is_empty() && self.strange.is_empty() && self.changed.is_empty() {
@@ -302,14 +302,14 @@ impl Found {
 fn plan_again(
     run: &mut Simulation,
     navigator: &mut Navigator,
-    convoy: &Convoy,
-    found: &Found,
+    convoy: &GoalFormation,
+    found: &Sightings,
     time: f64,
 ) -> Result<(), PlanError> {
     let vehicles = run.goals.vehicles.clone();
     let model = convoy.model(&vehicles)?;
     let limits = convoy.limits(&vehicles, &navigator.wish.travel);
-    let task = Task { model: &model, limits, standing: &found.standing, moving: &found.moving };
+    let task = PlanTask { model: &model, limits, standing: &found.standing, moving: &found.moving };
     let departure = departure(run, navigator, convoy, &model, &limits, time);
     let wish = navigator.wish.clone();
     let clearance = wish.clearance(&run.goals.rooms, &convoy.robots);
@@ -343,7 +343,7 @@ fn plan_again(
 fn departure(
     run: &Simulation,
     navigator: &Navigator,
-    convoy: &Convoy,
+    convoy: &GoalFormation,
     model: &FormationModel,
     limits: &TravelLimits,
     time: f64,

@@ -6,14 +6,14 @@ use planning::{BodyShape, FollowerModel, FormationModel, HeadingLag, InputError,
 use scene::{Travel, Vehicle};
 
 /// A lead robot and all that follow it.
-pub(super) struct Convoy {
+pub(super) struct GoalFormation {
     /// Numbers of its robots in the scene, each after the one that it follows.
     pub(super) robots: Vec<usize>,
-    pub(super) followers: Vec<ConvoyMember>,
+    pub(super) followers: Vec<FormationMember>,
 }
 
 /// A follower of a convoy.
-pub(super) struct ConvoyMember {
+pub(super) struct FormationMember {
     /// Number of its edge.
     pub(super) edge: usize,
     /// Place of its leader in the convoy.
@@ -25,7 +25,7 @@ pub(super) struct ConvoyMember {
     moves: Option<[f64; 2]>,
 }
 
-impl Convoy {
+impl GoalFormation {
     /// That of `lead` in a graph as it is, with set points as at `time` s.
     pub(super) fn of(graph: &Graph, laws: &[EdgeLaw], lead: usize, time: f64) -> Self {
         let wide: Vec<[f64; 2]> = laws.iter().map(|law| cartesian(law.set_point.at(time).value)).collect();
@@ -46,7 +46,7 @@ impl Convoy {
                 Heading::Path(filter) => Some(HeadingLag { length: filter.length, lag: filter.lag }),
                 Heading::Leader => None,
             };
-            followers.push(ConvoyMember {
+            followers.push(FormationMember {
                 edge: index,
                 leader,
                 places: [Some(wide[index]), law.narrowing.as_ref().map(|_| filed[index])],

@@ -9,7 +9,7 @@ use world::{Unicycle, Unicycles, World};
 
 /// All props of a scene as planning takes them.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Surroundings {
+pub(super) struct KnownThings {
     pub(super) things: Vec<Thing>,
 }
 
@@ -35,7 +35,7 @@ const AROUND: f64 = 10.0;
 /// Points of the tracks of things are so far apart, s.
 const TRACK_STEP: f64 = 0.1;
 
-impl Surroundings {
+impl KnownThings {
     pub(super) fn of(scene: &Scene) -> Result<Self, InputError> {
         let height = scene.robots.iter().map(|robot| robot.vehicle.body().height).fold(0.0, f64::max);
         let thing = |prop: &PropSpec| {

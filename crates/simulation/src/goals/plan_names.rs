@@ -1,12 +1,12 @@
 //! Why there is no way, with the names of the scene.
 
-use super::surroundings::owner;
+use super::known_things::owner;
 use crate::caption::short;
 use planning::{Boundary, Convex, NoWay, NoWayReason, PlanError};
 use vocabulary::EntityId;
 
 /// Who and what a plan was asked for.
-pub(super) struct Names<'a> {
+pub(super) struct PlanNames<'a> {
     /// Of everything.
     pub(super) name: &'a dyn Fn(EntityId) -> String,
     /// The robots of the plan, the lead first.
@@ -17,7 +17,7 @@ pub(super) struct Names<'a> {
     pub(super) moving: &'a [EntityId],
 }
 
-impl Names<'_> {
+impl PlanNames<'_> {
     /// Why there is no plan.
     pub(super) fn why(&self, error: &PlanError) -> String {
         match error {
