@@ -70,7 +70,7 @@ pub(crate) struct PictureArgs {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub(crate) size: Option<[u32; 2]>,
     /// Elements to hide, such as labels,inset; any of ribbons, ghosts, set-points, edges, labels, names, grid, inset,
-    /// caption, time, shadows, marks, contacts, barriers, events
+    /// caption, time, shadows, marks, contacts, barriers, events, plans
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) without: Vec<String>,
     /// In camera views, draw the detected tags, the estimated pose and its covariance

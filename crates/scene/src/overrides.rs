@@ -110,6 +110,11 @@ pub(crate) struct Origin {
     pub(crate) whole: Option<Span>,
 }
 
+/// Whether a member of a group, by its name by place, is the one that leads where the group has a path.
+pub(crate) fn is_first(member: &str) -> bool {
+    member.rsplit_once('-').is_some_and(|(_, place)| place == "1")
+}
+
 /// Puts `value` at `path`. Robots that a group makes are reached as if they stood in `robots`.
 fn put_in_scene(root: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &mut Reporter) {
     let [list, name, rest @ ..] = path else { return put(root, path, value, reporter) };
@@ -123,6 +128,13 @@ fn put_in_scene(root: &mut Node, path: &[PathPart<'_>], value: Node, reporter: &
         reporter.report(name.span, unknown_robot(root, name.text));
         return;
     };
+    // Its path is that of the group.
+    if is_first(&key) && rest.first().is_some_and(|part| part.text == "path") {
+        if let Some(group) = root.items_mut("groups").get_mut(index) {
+            put(group, rest, value, reporter);
+        }
+        return;
+    }
     let inside: Vec<_> =
         [PathPart { text: "members", span: list.span }, PathPart { text: &key, span: name.span }]
             .into_iter()

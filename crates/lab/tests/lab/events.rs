@@ -146,3 +146,27 @@ fn a_link_leads_to_what_happened_by_hand() {
     }
     assert_eq!(digest.text(), summary.digest, "{}", there.to_toml());
 }
+
+#[test]
+fn a_goal_that_is_moved_is_planned_to_from_where_the_formation_is_and_kept() {
+    let text = scene::shipped("two-formations").expect("a scene").text;
+    let mut rig = Rig::new(text);
+    to(&mut rig, 5.0);
+    for place in [[9.0, 1.0], [8.0, 3.0]] {
+        rig.act(&[Action::Goal { robot: 0, number: 0, place }]);
+    }
+    rig.act(&[Action::Release]);
+    to(&mut rig, 40.0);
+    let found = events(&rig);
+    let notice = rig.app_state.notice.clone();
+    let again = found
+        .iter()
+        .find(|(_, event)| event.kind == EventKind::Reroute)
+        .unwrap_or_else(|| panic!("{notice:?} {found:?}"));
+    assert!((again.0 - 5.01).abs() < 0.02 && again.1.robot == 0, "{found:?}");
+    let lead = rig.app_state.record().expect("a record").snapshot.robots[0].motion;
+    let away = vocabulary::math::hypot(lead.pose.x - 8.0, lead.pose.y - 3.0);
+    assert!(away < 0.2 && lead.speed < 1e-3, "{away} m away at {} m/s", lead.speed);
+    let repeats = kept(text, &mut rig);
+    assert!(repeats.contains("path.pose"), "{repeats}");
+}

@@ -1,7 +1,7 @@
 //! Where paths lead in a text.
 
 use super::EditError;
-use crate::overrides::MOST_PARTS;
+use crate::overrides::{MOST_PARTS, is_first};
 use crate::text::{node::composed, words::instead_of};
 use toml_edit::{Item, Table};
 
@@ -28,7 +28,13 @@ pub(super) fn steps(root: &Table, path: &str) -> Result<Vec<PathStep>, EditError
         && index_of(root, "robots", name).is_none()
         && let Some((group, key)) = made_by_group(root, name)
     {
-        parts.splice(..2, ["groups".to_owned(), group.to_string(), "members".to_owned(), key]);
+        let group = ["groups".to_owned(), group.to_string()];
+        // Its path is that of the group.
+        if is_first(&key) && parts.get(2).is_some_and(|part| part == "path") {
+            parts.splice(..2, group);
+        } else {
+            parts.splice(..2, group.into_iter().chain(["members".to_owned(), key]));
+        }
     }
     let mut steps: Vec<PathStep> = Vec::with_capacity(parts.len());
     let mut at: Option<&Item> = None;
