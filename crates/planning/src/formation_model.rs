@@ -1,5 +1,6 @@
 //! The formation that plans: bodies, who follows whom, and the places at every level, from the shape to the column.
 
+use crate::convex::{Convex, corners};
 use crate::error::{InputError, checked};
 use crate::limits::TravelLimits;
 use vocabulary::{Pose, math};
@@ -88,6 +89,16 @@ impl BodyShape {
         match *self {
             Self::Disc { radius } => radius,
             Self::Rectangle { front, back, half_width } => front.min(back).min(half_width).max(0.0),
+        }
+    }
+
+    /// What a robot of this shape takes up at a pose.
+    pub fn at(&self, pose: Pose) -> Convex {
+        match *self {
+            Self::Disc { radius } => Convex::new(&[[pose.x, pose.y]], radius),
+            Self::Rectangle { front, back, half_width } => {
+                Convex::new(&corners(pose, [-back, front], half_width), 0.0)
+            }
         }
     }
 

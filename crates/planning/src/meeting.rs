@@ -21,42 +21,40 @@ pub struct Meeting {
     pub way: f64,
 }
 
-impl MotionPlan {
-    /// The first time, from `from` s after its beginning on, at which a robot of this plan, which begins at `begins` s, is nearer
-    /// than `clearance` m to one of `things`. Things are looked at until the plan ends.
-    pub fn first_meeting(
-        &self,
-        model: &FormationModel,
-        limits: &TravelLimits,
-        clearance: f64,
-        things: &[MovingThing],
-        begins: f64,
-        from: f64,
-    ) -> Option<Meeting> {
-        if things.is_empty() {
-            return None;
-        }
-        let traffic = Traffic::new(self, model, limits, clearance, things, begins);
-        let mut cursor = 0;
-        self.points.windows(2).filter(|pair| pair[1].time > from).find_map(|pair| {
-            let [a, b] = [&pair[0], &pair[1]];
-            let span = b.time - a.time;
-            let acceleration = if span > 0.0 { (b.speed.abs() - a.speed.abs()) / span } else { 0.0 };
-            let stretch =
-                TimedStretch { way: a.way, speed: a.speed.abs(), acceleration, time: a.time, lasts: span };
-            traffic.meets(&stretch, &mut cursor)
-        })
+/// The first time, from `from` s after its beginning on, at which a robot of a plan that begins at `begins` s is nearer than
+/// `clearance` m to one of `things`. Things are looked at until the plan ends.
+pub fn first_meeting(
+    plan: &MotionPlan,
+    model: &FormationModel,
+    limits: &TravelLimits,
+    clearance: f64,
+    things: &[MovingThing],
+    begins: f64,
+    from: f64,
+) -> Option<Meeting> {
+    if things.is_empty() {
+        return None;
     }
+    let traffic = Traffic::new(plan, model, limits, clearance, things, begins);
+    let mut cursor = 0;
+    plan.points.windows(2).filter(|pair| pair[1].time > from).find_map(|pair| {
+        let [a, b] = [&pair[0], &pair[1]];
+        let span = b.time - a.time;
+        let acceleration = if span > 0.0 { (b.speed.abs() - a.speed.abs()) / span } else { 0.0 };
+        let stretch =
+            TimedStretch { way: a.way, speed: a.speed.abs(), acceleration, time: a.time, lasts: span };
+        traffic.meets(&stretch, &mut cursor)
+    })
+}
 
-    /// The same, of a request's formation and with its map's clearance.
-    pub(crate) fn meeting_of(
-        &self,
-        request: &PlanRequest<'_>,
-        things: &[MovingThing],
-        begins: f64,
-    ) -> Option<Meeting> {
-        self.first_meeting(request.model, &request.limits, request.map.clearance(), things, begins, 0.0)
-    }
+/// The same, of a request's formation and with its map's clearance.
+pub(crate) fn meeting_of(
+    plan: &MotionPlan,
+    request: &PlanRequest<'_>,
+    things: &[MovingThing],
+    begins: f64,
+) -> Option<Meeting> {
+    first_meeting(plan, request.model, &request.limits, request.map.clearance(), things, begins, 0.0)
 }
 
 /// A stretch of the way that is driven with one acceleration.

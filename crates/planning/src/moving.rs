@@ -1,8 +1,7 @@
 //! Things that move in a known way: other formations, carts on paths.
 
-use crate::convex::{Convex, apart, corners};
+use crate::convex::{Convex, apart};
 use crate::error::{InputError, checked};
-use crate::formation_model::BodyShape;
 use vocabulary::{Pose, wrap};
 
 /// A body on a known track.
@@ -134,18 +133,6 @@ fn hull(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let mut corners = half(&mut points.iter().copied());
     corners.extend(half(&mut points.iter().rev().copied()));
     corners
-}
-
-impl BodyShape {
-    /// What a robot of this shape takes up at a pose.
-    pub fn at(&self, pose: Pose) -> Convex {
-        match *self {
-            Self::Disc { radius } => Convex::new(&[[pose.x, pose.y]], radius),
-            Self::Rectangle { front, back, half_width } => {
-                Convex::new(&corners(pose, [-back, front], half_width), 0.0)
-            }
-        }
-    }
 }
 
 #[cfg(test)]

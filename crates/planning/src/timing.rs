@@ -5,7 +5,7 @@
 //! of a T²/2 of the way with a multiple of a T of speed, and what can be reached is a graph. A* finds the earliest arrival in
 //! it; the estimate is the time that the way takes where nothing moves.
 
-use crate::meeting::{Meeting, TimedStretch, Traffic};
+use crate::meeting::{Meeting, TimedStretch, Traffic, meeting_of};
 use crate::mission::PlanRequest;
 use crate::moving::MovingThing;
 use crate::plan::{MotionPlan, PlanPoint};
@@ -40,9 +40,9 @@ pub fn plan_among(
     stop: &mut dyn FnMut(usize) -> bool,
 ) -> Result<MotionPlan, PlanError> {
     let straight = plan(request, stop)?;
-    let Some(meeting) = straight.meeting_of(request, things, begins) else { return Ok(straight) };
+    let Some(meeting) = meeting_of(&straight, request, things, begins) else { return Ok(straight) };
     let longest = straight.duration();
-    let waits = straight.timed_among(request, things, begins);
+    let waits = timed_among(&straight, request, things, begins);
     if let Ok(timed) = &waits
         && timed.duration() <= SOON * longest
     {
@@ -78,10 +78,10 @@ fn around(
         map = map.with(things[meeting.thing].swept(time - WINDOW, time + WINDOW));
         let request = PlanRequest { map: &map, ..*request };
         let found = plan(&request, stop).ok()?;
-        match found.meeting_of(&request, things, begins) {
+        match meeting_of(&found, &request, things, begins) {
             None => return Some(found),
             Some(next) => {
-                if let Ok(timed) = found.timed_among(&request, things, begins) {
+                if let Ok(timed) = timed_among(&found, &request, things, begins) {
                     return Some(timed);
                 }
                 meeting = next;
@@ -91,49 +91,48 @@ fn around(
     None
 }
 
-impl MotionPlan {
-    /// The same way at other times, among `things` that move; the plan begins at `begins` s.
-    ///
-    /// # Errors
-    /// It meets something wherever it waits.
-    pub fn timed_among(
-        &self,
-        request: &PlanRequest<'_>,
-        things: &[MovingThing],
-        begins: f64,
-    ) -> Result<Self, Unavoidable> {
-        let Some(meeting) = self.meeting_of(request, things, begins) else { return Ok(self.clone()) };
-        let traffic =
-            Traffic::new(self, request.model, &request.limits, request.map.clearance(), things, begins);
-        let mut points: Vec<PlanPoint> = vec![];
-        let (mut time, mut stood) = (0.0, 0.0);
-        for range in self.between_stops() {
-            let part = &self.points[range];
-            // Wheels turn where the lead stands.
-            time += part[0].time - stood;
-            stood = part[part.len() - 1].time;
-            let lattice = SpeedLattice::new(part, request).ok_or(Unavoidable(meeting))?;
-            let stretches = lattice.search(part, &traffic, time).ok_or(Unavoidable(meeting))?;
-            time = stretches.last().map_or(time, |last| last.time + last.lasts);
-            points.extend(at_the_times_of(part, &stretches));
-        }
-        Ok(Self { points, ..self.clone() })
+/// The same way at other times, among `things` that move; the plan begins at `begins` s.
+///
+/// # Errors
+/// It meets something wherever it waits.
+pub fn timed_among(
+    plan: &MotionPlan,
+    request: &PlanRequest<'_>,
+    things: &[MovingThing],
+    begins: f64,
+) -> Result<MotionPlan, Unavoidable> {
+    let Some(meeting) = meeting_of(plan, request, things, begins) else { return Ok(plan.clone()) };
+    let clearance = request.map.clearance();
+    let traffic = Traffic::new(plan, request.model, &request.limits, clearance, things, begins);
+    let mut points: Vec<PlanPoint> = vec![];
+    let (mut time, mut stood) = (0.0, 0.0);
+    for range in between_stops(&plan.points) {
+        let part = &plan.points[range];
+        // Wheels turn where the lead stands.
+        time += part[0].time - stood;
+        stood = part[part.len() - 1].time;
+        let lattice = SpeedLattice::new(part, request).ok_or(Unavoidable(meeting))?;
+        let stretches = lattice.search(part, &traffic, time).ok_or(Unavoidable(meeting))?;
+        time = stretches.last().map_or(time, |last| last.time + last.lasts);
+        points.extend(at_the_times_of(part, &stretches));
     }
+    Ok(MotionPlan { points, ..plan.clone() })
+}
 
-    /// Parts of the points between stops of the lead.
-    fn between_stops(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
-        let last = self.points.len().saturating_sub(1);
-        let mut from = 0;
-        let mut parts = vec![];
-        for k in 1..=last {
-            if self.points[k].speed == 0.0 && k > from {
-                parts.push(from..k + 1);
-                // Where it turns about there are two points in one place.
-                from = if k < last && self.points[k + 1].way == self.points[k].way { k + 1 } else { k };
-            }
+/// Parts of the points of a plan between stops of the lead.
+fn between_stops(points: &[PlanPoint]) -> Vec<std::ops::Range<usize>> {
+    let last = points.len().saturating_sub(1);
+    let mut from = 0;
+    let mut parts = vec![];
+    for k in 1..=last {
+        if points[k].speed == 0.0 && k > from {
+            parts.push(from..k + 1);
+            // Where it turns about there are two points in one place.
+            from = if k < last && points[k + 1].way == points[k].way { k + 1 } else { k };
         }
-        parts.into_iter().filter(|part| part.len() > 1)
     }
+    parts.retain(|part| part.len() > 1);
+    parts
 }
 
 /// Rounds in which units and lead-in are fitted to each other.

@@ -2,7 +2,7 @@
 
 use planning::{
     BodyShape, Convex, FormationModel, Map, Mission, MotionPlan, MovingThing, PlanError, PlanGoal,
-    PlanRequest, PlanStart, TrackPoint, TravelLimits, plan, plan_among, trial,
+    PlanRequest, PlanStart, TrackPoint, TravelLimits, first_meeting, plan, plan_among, trial,
 };
 use std::f64::consts::PI;
 use vocabulary::Pose;
@@ -84,14 +84,14 @@ fn a_formation_lets_a_cart_cross() {
     let alone = plan(&request, &mut |_| false).expect("a way");
     for (starts, speed) in [(5.0, 0.6), (12.0, 0.4), (18.0, 1.5)] {
         let things = [cart([15.0, -12.0], [15.0, 14.0], starts, speed)];
-        let met = alone.first_meeting(&model, &limits, 0.25, &things, 0.0, 0.0);
+        let met = first_meeting(&alone, &model, &limits, 0.25, &things, 0.0, 0.0);
         let found = plan_among(&request, &things, 0.0, &mut |_| false).expect("a way");
         let near = least(&found, &model, &things, 0.0);
         assert!(near >= 0.25 - 1e-6, "{starts} {speed}: {near} m");
         check_motion(&found, &limits);
         // What says that it meets nothing is right about that, too.
         assert_eq!(met.is_some(), least(&alone, &model, &things, 0.0) < 0.25, "{starts} {speed}");
-        assert!(found.first_meeting(&model, &limits, 0.25 - 1e-6, &things, 0.0, 0.0).is_none());
+        assert!(first_meeting(&found, &model, &limits, 0.25 - 1e-6, &things, 0.0, 0.0).is_none());
     }
 }
 

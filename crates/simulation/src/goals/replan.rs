@@ -8,7 +8,8 @@ use super::navigator::{Departure, Navigator, Phase, PlanTask};
 use crate::events::let_stand;
 use crate::simulation::Simulation;
 use planning::{
-    Convex, FormationModel, Meeting, MovingThing, NoWayReason, PlanError, PlanStart, TrackPoint, TravelLimits,
+    Convex, FormationModel, Meeting, MovingThing, NoWayReason, PlanError, PlanStart, TrackPoint,
+    TravelLimits, first_meeting,
 };
 use std::sync::Arc;
 use vocabulary::{EntityId, EventKind, EventRecord, Motion, Pose, TimeMode, Trajectory, math};
@@ -279,7 +280,7 @@ impl Sightings {
             let parts = navigator.motion.parts().iter().filter(|part| part.ends() > time);
             parts.clone().find_map(|part| {
                 let from = (time - part.begins).max(0.0);
-                let met = part.plan.first_meeting(&model, &limits, clearance, things, part.begins, from)?;
+                let met = first_meeting(&part.plan, &model, &limits, clearance, things, part.begins, from)?;
                 Some(Meeting { time: met.time + part.begins, ..met })
             })
         };

@@ -90,7 +90,7 @@ impl Viewport {
                 }
                 Drag::Goal(robot, number) => {
                     if let Some(place) = sight.ground(pixel(pos)) {
-                        out.extend(moved(&frame, (robot, number), place));
+                        out.extend(moved(&frame, robot, number, place));
                     }
                 }
                 Drag::Connect(robot) => {
@@ -263,7 +263,7 @@ fn released_at(ui: &Ui) -> Option<Pos2> {
 }
 
 /// The action of a goal that is dragged to a place.
-fn moved(frame: &PointerFrame<'_>, (robot, number): (usize, usize), place: [f64; 2]) -> Option<Action> {
+fn moved(frame: &PointerFrame<'_>, robot: usize, number: usize, place: [f64; 2]) -> Option<Action> {
     let free = frame.ui.input(|input| input.modifiers.shift);
     let place = if free { place } else { place.map(|x| snap(x, STEPS[0])) };
     let all = goals(frame.app_state);
