@@ -23,7 +23,7 @@ fn corridor(width: f64) -> Map {
 }
 
 fn cart(from: [f64; 2], to: [f64; 2], starts: f64, speed: f64) -> MovingThing {
-    let way = ((to[0] - from[0]).powi(2) + (to[1] - from[1]).powi(2)).sqrt();
+    let way = vocabulary::math::hypot(to[0] - from[0], to[1] - from[1]);
     let heading = vocabulary::math::atan2(to[1] - from[1], to[0] - from[0]);
     let point = |time: f64, [x, y]: [f64; 2]| TrackPoint { time, pose: Pose::new(x, y, heading) };
     let body = Convex::rectangle(Pose::default(), [0.6, 0.3]).expect("a box");

@@ -107,7 +107,7 @@ pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Go
         why: error.to_string(),
     };
     let surroundings = KnownThings::of(scene).map_err(|error| invalid(asked[0].0, &error))?;
-    let vehicles: Vec<Vehicle> = scene.robots.iter().map(|robot| robot.vehicle.clone()).collect();
+    let vehicles: Vec<Vehicle> = scene.robots.iter().map(|robot| robot.vehicle).collect();
     let rooms: Vec<f64> = scene.robots.iter().map(room_beside).collect();
     let standing = surroundings.standing_at_first();
     let mut moving = surroundings.moving(|index| surroundings.things[index].known);

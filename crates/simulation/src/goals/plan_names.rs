@@ -3,6 +3,7 @@
 use super::known_things::owner;
 use crate::caption::short;
 use planning::{Boundary, Convex, NoWay, NoWayReason, PlanError};
+use std::fmt::Write;
 use vocabulary::EntityId;
 
 /// Who and what a plan was asked for.
@@ -62,18 +63,19 @@ impl PlanNames<'_> {
             }
             reason => reason.to_string(),
         };
+        // Writing to a text cannot fail.
         if let Some(gap) = &no_way.gap {
             let [a, b] = &gap.between;
             let [x, y] = gap.at.map(|value| short((10.0 * value).round() / 10.0));
             let width = short((100.0 * gap.width).round() / 100.0);
-            text += &format!(
-                "; what is in the way is the gap of {width} m between {} and {} at [{x}, {y}]",
-                self.thing(a),
-                self.thing(b)
+            let (a, b) = (self.thing(a), self.thing(b));
+            let _ = write!(
+                text,
+                "; what is in the way is the gap of {width} m between {a} and {b} at [{x}, {y}]"
             );
         }
         if let Some(offer) = &no_way.offer {
-            text += &format!("; there is {offer}");
+            let _ = write!(text, "; there is {offer}");
         }
         text
     }
