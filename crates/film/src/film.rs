@@ -52,7 +52,7 @@ impl Film {
     /// already. `made_of` is a line that is the same only for the same film.
     ///
     /// # Errors
-    /// As [`Film::create`]; [`Error::Busy`] where another program is making the film.
+    /// As [`Film::create`]; [`output::Error::Busy`] where another program is making the film.
     pub fn resume(
         path: &Path,
         width: u32,
