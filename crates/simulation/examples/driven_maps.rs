@@ -14,7 +14,6 @@ struct Row {
     arrived: u64,
     touched: Vec<u64>,
     late: Vec<u64>,
-    errors: Vec<f64>,
 }
 
 /// The scene of a map: seven in a V from one corner to the other.
@@ -106,7 +105,6 @@ fn drive(row: &mut Row, seed: u64, count: usize, vehicle: &str) -> Result<(), St
             last.iter().map(|motion| motion.speed).collect::<Vec<_>>()
         );
     }
-    row.errors.push(away);
     Ok(())
 }
 

@@ -151,6 +151,21 @@ fn what_nobody_knew_of_is_driven_around() {
 }
 
 #[test]
+fn a_cart_that_nobody_knew_of_is_let_by_when_it_is_sensed() {
+    // So slow that it is in the way of the plan.
+    let cart = ["props.cart.known=false", "props.cart.path.speed=0.75"];
+    let records = run("moving-obstacle", &cart);
+    assert!(!records.iter().any(|record| record.contacts.iter().any(Contact::of_robot)));
+    assert!(away(records.last().expect("a record"), [34.0, 0.0]) < 0.3);
+    let of_cart = |(_, event): &(f64, EventRecord)| event.obstacle == Some(EntityId::Prop(0));
+    assert!(
+        events(&records, EventKind::Reroute).iter().any(of_cart),
+        "{:?}",
+        events(&records, EventKind::Reroute)
+    );
+}
+
+#[test]
 fn where_there_is_no_way_any_more_a_formation_stops_waits_and_gives_up() {
     let scene = Scene::parse(CLOSED_ROOM, "test.toml", &[]).unwrap_or_else(|fault| panic!("{fault}")).scene;
     let records = records_of(&scene);

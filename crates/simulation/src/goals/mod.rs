@@ -87,15 +87,7 @@ impl Goals {
 /// # Errors
 /// There is no way to a goal: with the reason, and with what there is a way for.
 pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Goals, BuildError> {
-    let mut asked: Vec<(usize, GoalWish)> = scene
-        .robots
-        .iter()
-        .enumerate()
-        .filter_map(|(lead, robot)| {
-            let Role::Lead { path } = &robot.role else { return None };
-            Some((lead, wish(path)?))
-        })
-        .collect();
+    let mut asked = wishes(&scene.robots);
     if asked.is_empty() {
         return Ok(Goals::default());
     }
@@ -135,7 +127,7 @@ pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Go
         let navigator = Navigator {
             lead,
             asked: lead,
-            wish: Arc::new(wish),
+            wish,
             motion: Arc::new(PlannedMotion { parts, robots: convoy.robots, levels: model.levels() }),
             phase: Phase::Drives,
             knows: surroundings.things.iter().map(|thing| thing.known).collect(),

@@ -64,7 +64,7 @@ pub(super) enum Phase {
     Stays,
 }
 
-/// A convoy and what is known of its surroundings: what a plan is made of.
+/// A formation and what is known of its surroundings: what a plan is made of.
 pub(super) struct PlanTask<'a> {
     pub(super) model: &'a FormationModel,
     pub(super) limits: TravelLimits,
@@ -72,7 +72,7 @@ pub(super) struct PlanTask<'a> {
     pub(super) moving: &'a [(EntityId, MovingThing)],
 }
 
-/// Where and how a convoy is when it begins to plan.
+/// Where and how a formation is when it begins to plan.
 pub(super) struct Departure {
     pub(super) start: PlanStart,
     /// θ̄ and κ̄ of its followers, if they are known.

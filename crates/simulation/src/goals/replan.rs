@@ -149,7 +149,7 @@ struct Sightings {
     new: Vec<(EntityId, Convex)>,
     /// What moves in a way that no plan knows.
     strange: Vec<(EntityId, MovingThing)>,
-    /// Robots that go by other plans than before.
+    /// What goes by a track that plans did not know of: props, and robots that have other plans than before.
     changed: Vec<(EntityId, MovingThing)>,
 }
 
@@ -165,22 +165,23 @@ impl Sightings {
             })
         };
         let things = &run.goals.surroundings.things;
-        let mut found = Self {
-            standing: vec![],
-            moving: run.goals.surroundings.moving(|thing| navigator.knows[thing]),
-            new: vec![],
-            strange: vec![],
-            changed: vec![],
-        };
+        let mut found =
+            Self { standing: vec![], moving: vec![], new: vec![], strange: vec![], changed: vec![] };
         for (number, thing) in things.iter().enumerate().filter(|(_, thing)| !thing.overhead) {
-            if navigator.knows[number] && !thing.loose {
-                if thing.moving.is_none() {
-                    let body = thing.body.moved(thing.pose);
-                    if !thing.known {
-                        found.new.push((EntityId::Prop(number), body.clone()));
-                    }
-                    found.standing.push((EntityId::Prop(number), body));
+            if let Some(track) = &thing.moving {
+                navigator.knows[number] |= senses(&track.body_at(time));
+                // A plan that was made without it is held against where it goes.
+                if navigator.knows[number] && !thing.known {
+                    found.changed.push((EntityId::Prop(number), track.clone()));
                 }
+                continue;
+            }
+            if navigator.knows[number] && !thing.loose {
+                let body = thing.body.moved(thing.pose);
+                if !thing.known {
+                    found.new.push((EntityId::Prop(number), body.clone()));
+                }
+                found.standing.push((EntityId::Prop(number), body));
                 continue;
             }
             let now = above(&snapshot.props[number]);
@@ -197,6 +198,7 @@ impl Sightings {
                 found.standing.push((EntityId::Prop(number), body));
             }
         }
+        found.moving = run.goals.surroundings.moving(|thing| navigator.knows[thing]);
         found.see_robots(run, navigator, convoy, &senses, time);
         found
     }
