@@ -80,7 +80,7 @@ def work(side):
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     arguments.add_argument("--pairs", type=int, default=5, help="measurements of each side")
-    arguments.add_argument("--counts", default="1,16,64,256,1024,4096", help="numbers of copies")
+    arguments.add_argument("--counts", default="1,16,64,256,1024,4096", help="numbers of copies, with commas between them")
     arguments.add_argument("--work", help=argparse.SUPPRESS)
     given = arguments.parse_args()
     if given.work:

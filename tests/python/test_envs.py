@@ -341,7 +341,7 @@ class TestBadInput:
             env = make(SCENE, render_mode="rgb_array", size="64x48")
             env.reset(seed=0)
             assert np.shape(env.render())[-3:] == (48, 64, 3)
-        with pytest.raises(TypeError, match="make the environment in the process"):
+        with pytest.raises(TypeError, match="^an environment cannot be pickled.*in the process that uses it"):
             pickle.dumps(FormationEnv(SCENE))
 
     @pytest.mark.parametrize(
@@ -352,7 +352,7 @@ class TestBadInput:
             (lambda: FormationEnv(SCENE, Task(observation=("leader.distanse",))), "leader.distance,"),
             (lambda: FormationEnv(SCENE, render_mode="human"), "no window"),
             (lambda: FormationEnv(SCENE.set({"time.mode": "continuous"})), "sampled"),
-            (lambda: FormationVectorEnv(SCENE, num_envs=0), "one copy"),
+            (lambda: FormationVectorEnv(SCENE, num_envs=0), "from 1 on, not 0"),
             (lambda: FormationVectorEnv(SCENE, num_envs=2).reset(seed=[1]), "2 copies and 1 seeds"),
             (lambda: Task(samples=0), "samples is a positive"),
             (lambda: Task(bound=np.inf), "finite"),
@@ -436,5 +436,7 @@ def test_rewards_are_numbers_and_tasks_are_tasks():
     env.reset(seed=1)
     with pytest.raises(ValueError, match="^copy 0: the reward of `follower-1` is nan"):
         env.step(env.action_space.sample())
+    with pytest.raises(TypeError, match="reward is a function of signals, not 'x'"):
+        Task(reward="x")
     with pytest.raises(TypeError, match="num_envs=64"):
         FormationVectorEnv("circle-three", 64)

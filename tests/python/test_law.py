@@ -202,8 +202,10 @@ def test_a_law_that_raises_is_named_with_its_sample():
     ("answer", "message"),
     [
         (None, "returned nothing"),
-        ("left", "no numbers"),
-        ([[1, 2], [3]], "no numbers"),
+        ("left", r"no real numbers \(str\)"),
+        ([[1, 2], [3]], "no real numbers"),
+        ([["1", "2"], ["3", "4"]], "no real numbers"),
+        (np.zeros((2, 2), dtype=complex), "an array of complex128"),
         (np.zeros((2, 3)), r"shape \(2, 3\), not \(2, 2\)"),
         (np.zeros(4), "column_stack"),
         (np.array([[0, 0], [0, np.nan]]), "`follower-2`: the turn rate is nan"),
@@ -213,6 +215,14 @@ def test_a_law_that_raises_is_named_with_its_sample():
 def test_answers_that_are_no_commands(answer, message):
     with pytest.raises(LawError, match=message):
         SCENE.run(law=lambda told, time, memory: answer)
+
+
+def test_what_a_law_is_told_can_be_read_only():
+    def law(told, time, memory):
+        told.leader.distance[0] = 0.0
+
+    with pytest.raises(LawError, match="ValueError: assignment destination is read-only"):
+        SCENE.run(law=law)
 
 
 def test_laws_that_a_scene_cannot_have():

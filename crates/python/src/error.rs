@@ -84,8 +84,8 @@ fn not_written(text: String, number: Option<i32>, path: &Path) -> PyErr {
 /// Something that another thread is at work on.
 pub(crate) fn busy() -> PyErr {
     BusyError::new_err(
-        "another thread is at work on this simulation, or it is what calls this function: wait until it is done, or give each a \
-         fork() of its own",
+        "another thread is at work on this object, or it is what calls this function: wait until it is done, or give each one \
+         of its own (a simulation has fork())",
     )
 }
 
@@ -93,8 +93,11 @@ pub(crate) fn busy() -> PyErr {
 pub(crate) fn not_pickled(object: &Bound<'_, PyAny>, instead: &str) -> PyErr {
     let kind = object.get_type();
     let kind = kind.name().map(|name| name.to_string()).unwrap_or_default();
+    // What environments are made of is not what their user has made.
+    let kind = if kind == "Copies" { "environment" } else { &kind };
+    let article = if kind.starts_with('e') { "an" } else { "a" };
     PyTypeError::new_err(format!(
-        "a {kind} cannot be pickled, and so not be sent to another process: {instead}"
+        "{article} {kind} cannot be pickled, and so not be sent to another process: {instead}"
     ))
 }
 

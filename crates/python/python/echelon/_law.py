@@ -44,7 +44,7 @@ class _Group:
 class Observations:
     """What a law is told, one entry per follower in every array.
 
-    The names are those of law files: `own.speed`, `leader.distance`, `leader.bearing_rate`, `wanted.bearing` and so on;
+    The arrays can be read only. The names are those of law files: `own.speed`, `leader.distance`, `leader.bearing_rate`, `wanted.bearing` and so on;
     `echelon.INPUTS` lists all with their units. `leader` is the one leader of each follower.
 
     Attributes
@@ -142,6 +142,7 @@ class Caller:
         """The commands of the `robots` at a sample, as an array that is checked."""
         names = [self.robots[robot] for robot in robots]
         index = np.array([self._places[robot] for robot in robots])
+        numbers.flags.writeable = False
         told = Observations(numbers, names, index, np.array(meets), self.period, self.knows)
 
         def fault(text: str, robot: str | None = None) -> LawError:
@@ -156,9 +157,10 @@ class Caller:
         if answer is None:
             raise fault(f"it returned nothing: return an array of the shape ({len(names)}, 2)", alone)
         try:
-            commands = np.ascontiguousarray(answer, dtype=np.float64)
+            # Text would be read as numbers, and complex numbers lose a part.
+            commands = np.ascontiguousarray(np.asarray(answer).astype(np.float64, casting="same_kind"))
         except (TypeError, ValueError) as error:
-            raise fault(f"it returned no numbers ({type(answer).__name__})", alone) from error
+            raise fault(f"it returned no real numbers ({_kind(answer)})", alone) from error
         if commands.shape != (len(names), 2):
             raise fault(
                 f"it returned the shape {commands.shape}, not ({len(names)}, 2): one row per follower, acceleration in "
@@ -168,6 +170,11 @@ class Caller:
             what = ("acceleration", "turn rate")[column]
             raise fault(f"the {what} is {commands[row, column]}: a command is finite", names[row])
         return commands
+
+
+def _kind(answer: Any) -> str:
+    """What an error calls what a law returned."""
+    return f"an array of {answer.dtype}" if isinstance(answer, np.ndarray) else type(answer).__name__
 
 
 def caller(law: Any, robots: list[str], followers: list[str], period: float) -> Caller:

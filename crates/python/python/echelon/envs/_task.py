@@ -167,6 +167,8 @@ class Task:
                 raise ValueError(f"{name} is a positive number, not {value!r}")
         if not np.isfinite(self.bound):
             raise ValueError("bound is finite: the spaces of observations are")
+        if not (self.reward is None or callable(self.reward)):
+            raise TypeError(f"reward is a function of signals, not {self.reward!r}")
         if self.dtype not in ("float32", "float64"):
             raise ValueError(f'dtype is "float32" or "float64", not {self.dtype!r}')
         unknown = set(self.scales) - set(self.observation)

@@ -55,7 +55,9 @@ class FormationVectorEnv(VectorEnv[NDArray[Any], NDArray[Any], NDArray[Any]]):
         threads: int | None = None,
         adapter: str = "auto",
     ) -> None:
-        self.core = Core(scene, task, num_envs, followers, render_mode, view, size, threads, adapter, numbered=True)
+        if not (isinstance(num_envs, (int, np.integer)) and num_envs > 0):
+            raise ValueError(f"num_envs is a number of copies from 1 on, not {num_envs!r}")
+        self.core = Core(scene, task, int(num_envs), followers, render_mode, view, size, threads, adapter, numbered=True)
         self.num_envs, self.render_mode = num_envs, render_mode
         self.autoreset_mode = AutoresetMode(autoreset_mode)
         self.metadata = {**self.metadata, "render_fps": self.core.fps, "autoreset_mode": self.autoreset_mode}
