@@ -6,14 +6,15 @@ use crate::failure::Failure;
 use crate::load::{load, stem};
 use crate::print::{json, say};
 use clap::Args;
-use figures::{Plan, PlanOutline, PlanPath, Rgb, Stroke};
+use figures::{Key, Marker, Plan, PlanDots, PlanOutline, PlanPath, PlanStrip, Rgb, Stroke};
 use output::{Place, write_whole};
+use rendering::narrowing_colour;
 use serde_json::json;
 use std::fmt::Write;
 use std::path::PathBuf;
-use studies::SceneRun;
-use studies::plans::{PlannedWay, plans};
-use vocabulary::{Pose, Solid, counted};
+use studies::plans::{PlannedWay, plans, recorded_plans};
+use studies::{Error, SceneRun};
+use vocabulary::{Body, Pose, Solid, counted};
 
 #[derive(Debug, Args)]
 pub(crate) struct PlanArgs {
@@ -22,11 +23,14 @@ pub(crate) struct PlanArgs {
     /// Folder for the picture, plan.svg, and the points of the ways, plan.csv; earlier ones are replaced
     #[arg(long, short, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Draws what the search looked at, too: where steps ended, and ways that were put aside
+    #[arg(long, requires = "out")]
+    search: bool,
 }
 
 pub(crate) fn plan(args: &PlanArgs) -> Outcome {
     let run = load(&args.scene)?;
-    let ways = plans(&run);
+    let ways = if args.search { recorded_plans(&run).map_err(Error::from)? } else { plans(&run) };
     if ways.is_empty() {
         let text = format!(
             "{}: nothing is planned in it: no robot that leads has a path of kind \"goal\" or \"tour\"",
@@ -108,8 +112,20 @@ fn picture(run: &SceneRun, ways: &[PlannedWay]) -> Plan {
         let index = names.iter().position(|known| *known == name);
         index.and_then(|index| colours.get(index).copied()).unwrap_or([0.3; 3])
     };
-    let mut tracks = vec![];
+    let bodies: Vec<Body> = run.simulation.fleet().robots.iter().map(|robot| robot.body).collect();
+    let body = |name: &str| names.iter().position(|known| *known == name).map(|index| bodies[index]);
+    let (mut strips, mut dots, mut tracks) = (vec![], vec![], vec![]);
     for way in ways {
+        for (k, robot) in way.robots.iter().enumerate() {
+            strips.extend(body(robot).into_iter().flat_map(|body| swept(way, k, &body)));
+        }
+        dots.push(PlanDots { points: way.record.tried.clone(), colour: TRIED });
+        tracks.extend(way.record.rejected.iter().map(|points| PlanPath {
+            points: points.clone(),
+            colour: REJECTED,
+            stroke: Stroke::Dashed,
+            faint: false,
+        }));
         for (k, robot) in way.robots.iter().enumerate().rev() {
             tracks.push(PlanPath {
                 points: way
@@ -132,12 +148,62 @@ fn picture(run: &SceneRun, ways: &[PlannedWay]) -> Plan {
     Plan {
         title: format!("{}: the plan", run.scene.title),
         axes: Some(["x (m)".to_owned(), "y (m)".to_owned()]),
+        strips,
+        dots,
         tracks,
         outlines: outlines.collect(),
+        keys: keys(ways),
         width: 170.0,
         height: 140.0,
         ..Plan::default()
     }
+}
+
+/// Where steps of a search ended, and ways that were put aside.
+const TRIED: Rgb = [0.72, 0.74, 0.78];
+const REJECTED: Rgb = [0.62, 0.2, 0.45];
+
+/// The ground that robot number `k` of a way sweeps: a strip wherever the formation is about as narrow.
+fn swept(way: &PlannedWay, k: usize, body: &Body) -> Vec<PlanStrip> {
+    let mut strips: Vec<(i64, PlanStrip)> = vec![];
+    for row in &way.rows {
+        let Some(pose) = row.poses.get(k) else { continue };
+        let at = pose.world_from_body(0.5 * body.wheelbase, 0.0);
+        let shade = (row.narrowing * SHADES).round();
+        if let Some((_, strip)) = strips.last_mut() {
+            strip.points.push(at);
+        }
+        if strips.last().is_none_or(|(last, _)| *last != shade as i64) {
+            let colour = narrowing_colour(shade / SHADES);
+            strips.push((shade as i64, PlanStrip { points: vec![at], width: body.width, colour }));
+        }
+    }
+    strips.into_iter().map(|(_, strip)| strip).collect()
+}
+
+/// Shades between shape and column.
+const SHADES: f64 = 6.0;
+
+/// What colours and strokes stand for.
+fn keys(ways: &[PlannedWay]) -> Vec<Key> {
+    let key = |name: &str, stroke, marker, colour| Key {
+        name: name.to_owned(),
+        stroke,
+        marker,
+        colour: Some(colour),
+    };
+    let mut keys = vec![key("way of the lead", Stroke::Solid, Marker::None, [0.1; 3])];
+    keys.push(key("swept in the shape", Stroke::Solid, Marker::None, narrowing_colour(0.0)));
+    if ways.iter().any(|way| way.narrowest > 0.5) {
+        keys.push(key("in the column", Stroke::Solid, Marker::None, narrowing_colour(1.0)));
+    }
+    if ways.iter().any(|way| !way.record.tried.is_empty()) {
+        keys.push(key("step of the search", Stroke::None, Marker::Disc, TRIED));
+    }
+    if ways.iter().any(|way| !way.record.rejected.is_empty()) {
+        keys.push(key("way put aside", Stroke::Dashed, Marker::None, REJECTED));
+    }
+    keys
 }
 
 /// Corners of a circle as it is drawn.

@@ -3,7 +3,7 @@
 use crate::cameras::DrawingCost;
 use crate::print::{json, note, say};
 use metrics::{EventSummary, JudgedExpectation, Metrics};
-use scene::Scene;
+use scene::{Role, Scene};
 use serde_json::json;
 use std::path::PathBuf;
 use studies::link::LinkComparison;
@@ -41,6 +41,7 @@ pub(crate) fn as_text(summary: &Summary<'_>) {
     say(&format!("{}\n{}\n", scene.title, studies::caption(scene)));
     events(metrics);
     edges(scene, metrics);
+    plans(scene, metrics);
     if let (Some(clearance), Some(time), Some([a, b])) =
         (metrics.clearance_min, metrics.clearance_min_time, &metrics.clearance_min_robots)
     {
@@ -68,6 +69,20 @@ pub(crate) fn as_text(summary: &Summary<'_>) {
         say(&format!("recorded in {}", folder.display()));
     }
     expectations(summary);
+}
+
+/// How well lead robots kept to their plans.
+fn plans(scene: &Scene, metrics: &Metrics) {
+    let leads = scene.robots.iter().filter(|robot| matches!(robot.role, Role::Lead { .. }));
+    for lead in leads {
+        let kept = metrics.robots.iter().find(|robot| robot.robot == lead.name).and_then(|robot| robot.plan);
+        if let Some(plan) = kept {
+            say(&format!(
+                "{} keeps to its plan within {:.3} m, root mean square {:.3} m",
+                lead.name, plan.error_max, plan.error_rms
+            ));
+        }
+    }
 }
 
 /// Contacts, and robots in trouble, that a summary lists one by one.

@@ -14,7 +14,7 @@ mod plan;
 mod svg;
 mod trim;
 
-pub use plan::{Arrow, Note, Plan, PlanNode, PlanOutline, PlanPath, Side};
+pub use plan::{Arrow, Note, Plan, PlanDots, PlanNode, PlanOutline, PlanPath, PlanStrip, Side};
 pub use svg::Rgb;
 
 /// How values lie along an axis.

@@ -20,6 +20,26 @@ pub struct PlanPath {
     pub faint: bool,
 }
 
+/// Ground that something sweeps.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PlanStrip {
+    /// Its middle line, [x, y].
+    pub points: Vec<[f64; 2]>,
+    /// In the unit of the axes.
+    pub width: f64,
+    /// Its colour.
+    pub colour: Rgb,
+}
+
+/// A crowd of dots.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PlanDots {
+    /// [x, y].
+    pub points: Vec<[f64; 2]>,
+    /// Their colour.
+    pub colour: Rgb,
+}
+
 /// A closed shape.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PlanOutline {
@@ -95,6 +115,10 @@ pub struct Plan {
     pub title: String,
     /// Labels of the axes; a map without has no frame.
     pub axes: Option<[String; 2]>,
+    /// Ground under everything.
+    pub strips: Vec<PlanStrip>,
+    /// Dots over that.
+    pub dots: Vec<PlanDots>,
     /// Ways.
     pub tracks: Vec<PlanPath>,
     /// Shapes over them.
@@ -120,6 +144,8 @@ impl Default for Plan {
         Self {
             title: String::new(),
             axes: None,
+            strips: vec![],
+            dots: vec![],
             tracks: vec![],
             outlines: vec![],
             arrows: vec![],
@@ -187,7 +213,8 @@ impl Plan {
         let tracks = self.tracks.iter().flat_map(|t| &t.points);
         let outlines = self.outlines.iter().flat_map(|o| &o.points);
         let arrows = self.arrows.iter().flat_map(|a| [&a.from, &a.to]);
-        let all = tracks.chain(outlines).chain(arrows).chain(self.nodes.iter().map(|n| &n.at));
+        let dots = self.dots.iter().flat_map(|d| &d.points);
+        let all = tracks.chain(dots).chain(outlines).chain(arrows).chain(self.nodes.iter().map(|n| &n.at));
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for place in all.filter(|p| p.iter().all(|x| x.is_finite())) {
             for axis in [0, 1] {
@@ -199,10 +226,36 @@ impl Plan {
     }
 
     fn draw(&self, svg: &mut Svg, on: &Projection) {
+        let on_paper = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
+            points.iter().filter(|p| p.iter().all(|x| x.is_finite())).map(|p| on.at(*p)).collect()
+        };
+        for strip in &self.strips {
+            let d = polyline(&thinned(&on_paper(&strip.points), 0.03));
+            let (colour, width) = (ink(strip.colour), strip.width * on.scale);
+            svg.path(
+                &d,
+                &format!(
+                    "fill=\"none\" stroke=\"{colour}\" stroke-opacity=\"0.22\" stroke-width=\"{width:.2}\" \
+                     stroke-linejoin=\"round\""
+                ),
+            );
+        }
+        for dots in &self.dots {
+            let d: String = on_paper(&dots.points).iter().map(|p| format!("M{}h0", point(*p))).collect();
+            let colour = ink(dots.colour);
+            svg.path(
+                &d,
+                &format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.1\" stroke-linecap=\"round\""),
+            );
+        }
         for track in &self.tracks {
-            let run: Vec<[f64; 2]> =
-                track.points.iter().filter(|p| p.iter().all(|x| x.is_finite())).map(|p| on.at(*p)).collect();
-            stroke(svg, &polyline(&thinned(&run, 0.03)), track.stroke, &ink(track.colour), track.faint);
+            stroke(
+                svg,
+                &polyline(&thinned(&on_paper(&track.points), 0.03)),
+                track.stroke,
+                &ink(track.colour),
+                track.faint,
+            );
         }
         for outline in &self.outlines {
             let d = polyline(&outline.points.iter().map(|p| on.at(*p)).collect::<Vec<_>>());

@@ -45,6 +45,7 @@ pub use law::{Law, LawInput, Switching};
 pub use memory::EdgeMemory;
 pub use narrowing::Narrowing;
 pub use observer::{Estimate, Observer};
-pub use path_heading::{Heading, PathFilter, PathHeading};
+pub use path_heading::{Heading, PathHeading};
 pub use set_point::SetPointTrajectory;
 pub use tracker::{Own, Tracker, TrackerParameters};
+pub use vocabulary::PathFilter;

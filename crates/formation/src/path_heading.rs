@@ -3,27 +3,9 @@
 //! Counted from the leader's own heading, a bearing swings with every turn of the leader, and a follower swings more than
 //! its leader. Counted from a heading θ̄ that follows the leader's only as it drives, the follower tracks the direction
 //! φ = ψ + θ_i of the line to it, φ^d = ψ^d + θ̄, and what its leader does to φ is free of the leader's turn rate.
-//!
-//! With e = θ_i − θ̄ and s the way the leader has gone, H = (1 + (2λ − τ) s)/(1 + λ s)² from θ_i to θ̄ is
-//!
-//! ```text
-//! dθ̄/ds = κ̄ + b e                 b = (2λ − τ)/λ²
-//! dκ̄/ds = (1 − τ/λ)² e/λ² − τ κ̄/λ²
-//! ```
-//!
-//! On a circle θ̄ ends τ/R behind θ_i. At τ = 0 this is the loop without lag of Kanayama's kind, at τ = λ the first-order
-//! filter dθ̄/ds = e/λ.
+//! The filter is [`PathFilter`].
 
-use vocabulary::{HeadingReference, Relative, math, wrap};
-
-/// A filter of the leader's heading along its path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PathFilter {
-    /// λ, m; positive: a turn of the leader has arrived when it has gone a few of these.
-    pub length: f64,
-    /// τ, m, from 0 to 2 λ: on a circle of radius R the filtered heading is τ/R behind.
-    pub lag: f64,
-}
+use vocabulary::{HeadingReference, PathFilter, Relative, wrap};
 
 /// Against what heading a bearing is held.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -74,28 +56,6 @@ impl Heading {
     }
 }
 
-impl PathFilter {
-    /// b, 1/m.
-    pub fn gain(&self) -> f64 {
-        (2.0 * self.length - self.lag) / (self.length * self.length)
-    }
-
-    /// dκ̄/ds per e and per −κ̄, [1/m², 1/m].
-    pub fn curvature_gains(&self) -> [f64; 2] {
-        let square = self.length * self.length;
-        let left = 1.0 - self.lag / self.length;
-        [left * left / square, self.lag / square]
-    }
-}
-
-impl PathFilter {
-    /// How far θ̄ ends behind the heading of a leader that drives at `speed` m/s and turns at `turn_rate` rad/s, rad; 0
-    /// behind one that stands.
-    pub fn steady(&self, speed: f64, turn_rate: f64) -> f64 {
-        if speed > 0.0 { wrap(self.lag * turn_rate / speed) } else { 0.0 }
-    }
-}
-
 impl PathHeading {
     /// As it is behind a leader that has driven a curve of `curvature` 1/m for long, and heads for `leader_heading` rad.
     pub fn steady(filter: &PathFilter, leader_heading: f64, curvature: f64) -> Self {
@@ -104,14 +64,10 @@ impl PathHeading {
     }
 
     /// Goes on over `travelled` m of the leader's way, at the end of which it heads for `leader_heading` rad. Exact for a
-    /// heading that is held: both roots are −1/λ.
+    /// heading that is held.
     pub fn advance(&mut self, filter: &PathFilter, leader_heading: f64, travelled: f64) {
-        let (e, kappa) = (wrap(leader_heading - self.heading), self.curvature);
-        let (b, [rise, fall], root) = (filter.gain(), filter.curvature_gains(), 1.0 / filter.length);
-        let decay = math::exp(-root * travelled);
-        // e^(M s) = e^(−s/λ) (I + (M + I/λ) s).
-        self.behind = decay * (e + travelled * ((root - b) * e - kappa));
-        self.curvature = decay * (kappa + travelled * (rise * e + (root - fall) * kappa));
+        let e = wrap(leader_heading - self.heading);
+        [self.behind, self.curvature] = filter.step([e, self.curvature], travelled);
         self.heading = wrap(leader_heading - self.behind);
     }
 

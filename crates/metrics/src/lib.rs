@@ -7,6 +7,7 @@ mod digest;
 mod expectations;
 mod measurements;
 mod metrics;
+mod plan_tracking;
 mod safety;
 mod statistics;
 
@@ -19,5 +20,6 @@ pub use metrics::{
     EdgeMetrics, EventSummary, LawFaultMetrics, Metrics, MetricsBuilder, NarrowingMetrics, RobotMetrics,
     STANDING_AFTER, StandingMetrics,
 };
+pub use plan_tracking::PlanTrackingMetrics;
 pub use safety::SafetyMetrics;
 pub use statistics::{RootMeanSquare, median};

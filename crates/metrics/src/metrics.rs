@@ -4,6 +4,7 @@ use crate::certificates::CertificateMetrics;
 use crate::clearance::Clearance;
 use crate::contacts::{ContactLog, ContactMetrics};
 use crate::measurements::{MeasurementMetrics, MeasurementSums};
+use crate::plan_tracking::{PlanTrackingMetrics, PlanTrackingSums};
 use crate::safety::{SafetyMetrics, SafetySums};
 use crate::statistics::RootMeanSquare;
 use serde::Serialize;
@@ -63,6 +64,9 @@ pub struct RobotMetrics {
     /// What its safety filter did; `None` where it had none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub safety: Option<SafetyMetrics>,
+    /// How well it kept to its formation's plan; `None` where it had none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plan: Option<PlanTrackingMetrics>,
 }
 
 /// One edge over a run.
@@ -186,6 +190,7 @@ pub struct MetricsBuilder {
     lifts: Vec<f64>,
     conditions: Vec<Condition>,
     safety: Vec<SafetySums>,
+    plans: Vec<PlanTrackingSums>,
     events: Vec<EventSummary>,
     law_faults: Vec<LawFaultMetrics>,
 }
@@ -233,6 +238,7 @@ impl MetricsBuilder {
             lifts: vec![0.0; fleet.robots.len()],
             conditions: vec![Condition::Able; fleet.robots.len()],
             safety: vec![SafetySums::default(); fleet.robots.len()],
+            plans: vec![PlanTrackingSums::default(); fleet.robots.len()],
             events: vec![],
             law_faults: vec![],
             fleet: fleet.clone(),
@@ -271,6 +277,7 @@ impl MetricsBuilder {
                 sums.add(time, state);
             }
         }
+        PlanTrackingSums::push(&mut self.plans, record);
         for state in record.laws.iter().filter(|state| !state.fault.is_empty()) {
             self.law_faults.push(LawFaultMetrics {
                 robot: self.fleet.name(EntityId::Robot(state.robot)).to_owned(),
@@ -341,6 +348,7 @@ impl MetricsBuilder {
             lift_max: self.lifts[index],
             condition: self.conditions[index].word().to_owned(),
             safety: self.safety[index].finish(&self.fleet),
+            plan: self.plans[index].finish(),
         }
     }
 }

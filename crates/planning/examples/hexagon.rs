@@ -7,11 +7,11 @@
 
 use planning::trial::Draws;
 use planning::{
-    BodyShape, Convex, FollowerModel, FormationModel, HeadingLag, Map, Mission, MotionPlan, PlanGoal,
-    PlanPoint, PlanRequest, PlanStart, TravelLimits, plan,
+    BodyShape, Convex, FollowerModel, FormationModel, Map, Mission, MotionPlan, PlanGoal, PlanPoint,
+    PlanRequest, PlanStart, TravelLimits, plan,
 };
 use std::time::Instant;
-use vocabulary::{Pose, math};
+use vocabulary::{PathFilter, Pose, math};
 
 /// The forest, m: cylinders and rings stand on so much ground, in the middle of that on which robots move.
 const FOREST: [f64; 2] = [34.0, 15.0];
@@ -118,7 +118,7 @@ fn hexagon(radius: f64) -> FormationModel {
         let from = at(if leader == 0 { 0 } else { order[leader - 1].0 });
         let wide = [0, 1].map(|k| at(robot)[k] - from[k]);
         FollowerModel::narrowing(leader, [wide, [ahead * gap, 0.0]], STEPS, body)
-            .with_heading(Some(HeadingLag { length: 1.0, lag: 1.0 }))
+            .with_heading(Some(PathFilter { length: 1.0, lag: 1.0 }))
     };
     let followers = order.into_iter().map(follower).collect();
     FormationModel::new(body, followers).unwrap_or_else(|error| unreachable!("{error}"))

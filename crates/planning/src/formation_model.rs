@@ -3,7 +3,7 @@
 use crate::convex::{Convex, corners};
 use crate::error::{InputError, checked};
 use crate::limits::TravelLimits;
-use vocabulary::{Pose, math};
+use vocabulary::{PathFilter, Pose, math};
 
 /// What a robot takes up, seen from above.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,15 +24,6 @@ pub enum BodyShape {
     },
 }
 
-/// How the heading that a place is held against follows the leader's, see `docs/moving.md`.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HeadingLag {
-    /// λ, m.
-    pub length: f64,
-    /// τ, m, from 0 to 2 λ: on a circle of radius R the held heading is τ/R behind.
-    pub lag: f64,
-}
-
 /// A robot that follows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FollowerModel {
@@ -41,7 +32,7 @@ pub struct FollowerModel {
     /// Its place at every level, [forward, left] of its leader in the heading that it is held against, m.
     pub places: Vec<[f64; 2]>,
     /// The filter of that heading; without one it is the leader's own.
-    pub heading: Option<HeadingLag>,
+    pub heading: Option<PathFilter>,
     /// Its body.
     pub body: BodyShape,
 }
@@ -132,7 +123,7 @@ impl FollowerModel {
 
     /// The same with its place held against a filtered heading.
     #[must_use]
-    pub fn with_heading(self, heading: Option<HeadingLag>) -> Self {
+    pub fn with_heading(self, heading: Option<PathFilter>) -> Self {
         Self { heading, ..self }
     }
 }
@@ -160,7 +151,7 @@ impl FormationModel {
                 return Err(InputError::NotFinite { what: format!("a place of follower {number}") });
             }
             follower.body.check(&|| format!("follower {number}"))?;
-            if let Some(HeadingLag { length, lag }) = follower.heading {
+            if let Some(PathFilter { length, lag }) = follower.heading {
                 let what = |name: &str| format!("{name} of follower {number}");
                 checked(length, length > 0.0, || what("the heading's length"), "positive, m")?;
                 let fits = (0.0..=2.0 * length).contains(&lag);

@@ -26,6 +26,10 @@ pub struct TravelLimits {
     pub turning: f64,
     /// Largest curvature of followers, 1/m, on steered wheels.
     pub follower_curvature: Option<f64>,
+    /// How fast followers turn, rad/s.
+    pub follower_turn_rate: Option<f64>,
+    /// How strongly they change their speed where their places on a curve ask for it, m/s².
+    pub follower_acceleration: Option<f64>,
     /// How fast a follower's place moves from level to level, m/s.
     pub place_rate: f64,
     /// How strongly it is sped up for that, m/s².
@@ -48,6 +52,8 @@ impl Default for TravelLimits {
             outer: 1.6,
             turning: 0.8,
             follower_curvature: None,
+            follower_turn_rate: None,
+            follower_acceleration: None,
             place_rate: 0.25,
             place_acceleration: 0.4,
             reverses: false,
@@ -72,6 +78,8 @@ impl TravelLimits {
             ("the followers' speed", self.outer, "positive, m/s"),
             ("the speed in turns", self.turning, "positive, m/s"),
             ("the followers' curvature", self.follower_curvature.unwrap_or(1.0), "positive, 1/m"),
+            ("the followers' turn rate", self.follower_turn_rate.unwrap_or(1.0), "positive, rad/s"),
+            ("the followers' acceleration", self.follower_acceleration.unwrap_or(1.0), "positive, m/s²"),
             ("the rate of places", self.place_rate, "positive, m/s"),
             ("the acceleration of places", self.place_acceleration, "positive, m/s²"),
         ];

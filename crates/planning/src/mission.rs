@@ -75,7 +75,7 @@ pub struct SearchEffort {
     pub headings: usize,
     /// Whether the way is smoothed.
     pub smooths: bool,
-    /// Whether it is recorded where steps ended that were swept.
+    /// Whether it is recorded what the search looked at.
     pub records: bool,
 }
 

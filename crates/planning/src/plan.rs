@@ -3,6 +3,7 @@
 use crate::leg::Leg;
 use crate::mission::PlanRequest;
 use crate::search::cost_of;
+use crate::search_record::SearchRecord;
 use crate::speed::{PieceBound, level_ramps, speeds};
 use crate::trailing::{STEP, Sweep, Trailing};
 use vocabulary::{Pose, wrap};
@@ -49,8 +50,8 @@ pub struct MotionPlan {
     pub brakes_in_time: bool,
     /// θ̄ in rad and κ̄ in 1/m of the headings that followers are held against at the end, for [`PlanRequest::held`].
     pub held: Vec<[f64; 2]>,
-    /// Where steps of the search ended that were swept, m, if the effort asks for it.
-    pub tried: Vec<[f64; 2]>,
+    /// What the search looked at, if its effort asks for it.
+    pub record: SearchRecord,
 }
 
 /// How much way ahead levels are handed out where there is room, m, and shares of it that are tried where there is not.
@@ -121,7 +122,15 @@ impl MotionPlan {
         if let Some(last) = points.last_mut() {
             last.speed = 0.0;
         }
-        Some(Self { points, legs: vec![], held: vec![], tried: vec![], ..self.clone() })
+        Some(Self { points, legs: vec![], held: vec![], record: SearchRecord::default(), ..self.clone() })
+    }
+
+    /// Puts another plan aside for this one: its way, and what its search looked at, are kept for pictures if those are recorded.
+    pub fn reject(&mut self, other: &Self) {
+        if self.record != SearchRecord::default() {
+            self.record.extend(&other.record);
+            self.record.reject(&other.legs);
+        }
     }
 
     /// A number that two plans share only if they are the same to the last bit.
@@ -181,7 +190,7 @@ impl MotionPlan {
             ahead: 0.0,
             brakes_in_time,
             held: trailing.held_of_followers(&convoy),
-            tried: vec![],
+            record: SearchRecord::default(),
         };
         plan.hand_out_early(request, trailing);
         plan
@@ -202,13 +211,24 @@ impl MotionPlan {
         }
     }
 
-    /// The narrowest level within a way ahead, for every point.
+    /// The narrowest level within a way ahead, for every point. It begins as that of the formation does, and rises no more
+    /// steeply than that: a lead that sets out is slow, and places would move aside faster than it drives.
     fn narrowest(&self, ahead: f64) -> Vec<f64> {
-        let of = |k: usize| {
-            let within = self.points[k..].iter().take_while(|point| point.way <= self.points[k].way + ahead);
-            within.map(|point| point.level).fold(self.points[k].level, f64::max)
-        };
-        (0..self.points.len()).map(of).collect()
+        let pairs =
+            || self.points.windows(2).map(|pair| (pair[1].way - pair[0].way, pair[1].level - pair[0].level));
+        let steepest =
+            pairs().filter(|(way, _)| *way > 1e-6).fold(0.0, |most: f64, (way, rise)| most.max(rise / way));
+        let mut levels: Vec<f64> = vec![];
+        for (k, point) in self.points.iter().enumerate() {
+            let within = self.points[k..].iter().take_while(|other| other.way <= point.way + ahead);
+            let narrowest = within.map(|other| other.level).fold(point.level, f64::max);
+            let most = match levels.last() {
+                None => point.level,
+                Some(last) => last + steepest * (point.way - self.points[k - 1].way),
+            };
+            levels.push(narrowest.min(most).max(point.level));
+        }
+        levels
     }
 
     fn is_clear_at(&self, request: &PlanRequest<'_>, trailing: &Trailing, levels: &[f64]) -> bool {
@@ -281,20 +301,33 @@ impl Course {
         let mut points = vec![point(0.0, leg.start, first.curvature, first.level, robots(convoy))];
         let mut bounds = vec![];
         let mut curvature = first.curvature;
+        // Length of the piece before, and every robot's speed per speed of the lead over it.
+        let mut before = 0.0;
+        let mut ratios = vec![1.0; trailing.robots()];
         for piece in leg.pieces(piece_length(leg)) {
             for robot in 0..trailing.robots() {
                 trailing.step(convoy, robot, &piece);
             }
             points.push(point(piece.way, piece.end, piece.curvature, piece.level, robots(convoy)));
+            // From the middle of the piece before to that of this one.
+            let span = 0.5 * (before + piece.length);
+            let [mut turn, mut change] = [0.0_f64; 2];
+            for robot in 1..trailing.robots() {
+                let ratio = convoy.moved[robot] / piece.length;
+                turn = turn.max(convoy.turned(robot).abs() / span);
+                if before > 0.0 {
+                    change = change.max((ratio - ratios[robot]).abs() / span);
+                }
+                ratios[robot] = ratio;
+            }
+            before = piece.length;
             bounds.push(PieceBound {
                 length: piece.length,
                 curvature: curvature.abs().max(piece.curvature.abs()),
                 sharpness: (piece.curvature - curvature).abs() / piece.length,
-                ratio: convoy
-                    .moved
-                    .iter()
-                    .skip(1)
-                    .fold(0.0, |most: f64, moved| most.max(moved / piece.length)),
+                ratio: ratios.iter().skip(1).copied().fold(0.0, f64::max),
+                turn,
+                change,
                 places: f64::INFINITY,
             });
             curvature = piece.curvature;

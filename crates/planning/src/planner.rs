@@ -52,7 +52,7 @@ pub fn plan(request: &PlanRequest<'_>, stop: &mut dyn FnMut(usize) -> bool) -> R
     plan.searched_cost = way.cost;
     plan.expansions = outcome.expansions;
     plan.smoothed = changed;
-    plan.tried = outcome.tried;
+    plan.record = outcome.record;
     Ok(plan)
 }
 

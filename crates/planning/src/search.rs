@@ -16,6 +16,7 @@ use crate::leg::{CurvatureKnot, KnotList, Leg};
 use crate::mission::{CostWeights, PlanRequest};
 use crate::primitive::Primitives;
 use crate::reeds_shepp::shortest_reeds_shepp;
+use crate::search_record::SearchRecord;
 use crate::shot::{ShotStart, Turning, shot};
 use crate::trailing::{Convoy, Sweep, Trailing};
 use std::cmp::Reverse;
@@ -39,8 +40,8 @@ pub(crate) struct SearchOutcome {
     pub expansions: usize,
     /// Why there is no way, if there is none.
     pub ended: Ended,
-    /// Where steps that were swept ended, if asked for.
-    pub tried: Vec<[f64; 2]>,
+    /// What it looked at, if asked for.
+    pub record: SearchRecord,
 }
 
 /// Why a search ended.
@@ -126,7 +127,12 @@ pub(crate) fn search(
     stop: &mut dyn FnMut(usize) -> bool,
 ) -> SearchOutcome {
     let mut lattice = Lattice::new(request, trailing);
-    let mut outcome = SearchOutcome { way: None, expansions: 0, ended: Ended::Unreachable, tried: vec![] };
+    let mut outcome = SearchOutcome {
+        way: None,
+        expansions: 0,
+        ended: Ended::Unreachable,
+        record: SearchRecord::default(),
+    };
     if lattice.heuristic.left(request.mission.start.pose).is_infinite() {
         return outcome;
     }
@@ -247,7 +253,7 @@ impl<'a> Lattice<'a> {
             after += usize::from(outcome.way.is_some());
             if self.request.effort.records {
                 let pose = self.nodes[index].pose;
-                outcome.tried.push([pose.x, pose.y]);
+                outcome.record.tried.push([pose.x, pose.y]);
             }
             if !self.arrives(index) {
                 continue;
@@ -255,8 +261,9 @@ impl<'a> Lattice<'a> {
             self.closed.insert(key);
             if let Some(way) = self.ends(index, outcome.expansions) {
                 let is_better = outcome.way.as_ref().is_none_or(|best| grains(way.cost) < grains(best.cost));
-                if is_better {
-                    outcome.way = Some(way);
+                let aside = if is_better { outcome.way.replace(way) } else { Some(way) };
+                if let Some(aside) = aside.filter(|_| self.request.effort.records) {
+                    outcome.record.reject(&aside.legs);
                 }
             }
             let bound = outcome.way.as_ref().map_or(f64::INFINITY, |way| way.cost);

@@ -2,10 +2,11 @@
 //!
 //! ```text
 //! v ≤ v_max    |κ| v² ≤ a_lat    |dκ/ds| v ≤ κ̇_max    r_j v ≤ v_outer    v T ≤ D
+//! |dχ_j/ds| v ≤ ω_max    |dr_j/ds| v² ≤ a_j
 //! v_{k+1}² ≤ v_k² + 2 a Δs      v_k² ≤ v_{k+1}² + 2 b Δs
 //! ```
 //!
-//! r_j is the speed of follower j per speed of the lead, and T = Δ/r + r/a the time in which a place moves by Δ, for which the
+//! r_j is the speed of follower j per speed of the lead, χ_j the direction in which it drives, and T = Δ/r + r/a the time in which a place moves by Δ, for which the
 //! lead drives D. Each bound holds at both ends of a piece: v² is linear in between.
 
 use crate::formation_model::FormationModel;
@@ -23,6 +24,10 @@ pub(crate) struct PieceBound {
     pub sharpness: f64,
     /// Largest speed of a follower per speed of the lead.
     pub ratio: f64,
+    /// By how much a follower turns per way of the lead, rad/m: the most.
+    pub turn: f64,
+    /// By how much `ratio` changes per way of the lead for any follower, 1/m: the most.
+    pub change: f64,
     /// Speed in which places can follow, m/s.
     pub places: f64,
 }
@@ -35,6 +40,12 @@ impl PieceBound {
         }
         if self.sharpness > 0.0 {
             speed = speed.min(limits.steering / self.sharpness);
+        }
+        if let Some(turn_rate) = limits.follower_turn_rate.filter(|_| self.turn > 0.0) {
+            speed = speed.min(turn_rate / self.turn);
+        }
+        if let Some(acceleration) = limits.follower_acceleration.filter(|_| self.change > 0.0) {
+            speed = speed.min((acceleration / self.change).sqrt());
         }
         speed
     }
@@ -122,7 +133,7 @@ mod tests {
     use super::*;
 
     fn piece(curvature: f64, sharpness: f64, ratio: f64) -> PieceBound {
-        PieceBound { length: 0.1, curvature, sharpness, ratio, places: f64::INFINITY }
+        PieceBound { length: 0.1, curvature, sharpness, ratio, turn: 0.0, change: 0.0, places: f64::INFINITY }
     }
 
     #[test]
@@ -145,6 +156,8 @@ mod tests {
             steering: 0.1,
             acceleration: 9.0,
             braking: 9.0,
+            follower_turn_rate: Some(0.5),
+            follower_acceleration: Some(0.1),
             ..TravelLimits::default()
         };
         let slow = |piece: PieceBound| speeds(&[piece; 60], &limits, 0.3)[30];
@@ -152,6 +165,8 @@ mod tests {
         assert!((slow(piece(0.0, 0.4, 1.0)) - 0.25).abs() < 1e-12);
         assert!((slow(piece(0.0, 0.0, 4.0)) - 0.4).abs() < 1e-12);
         assert!((slow(PieceBound { places: 0.1, ..piece(0.0, 0.0, 1.0) }) - 0.1).abs() < 1e-12);
+        assert!((slow(PieceBound { turn: 2.0, ..piece(0.0, 0.0, 1.0) }) - 0.25).abs() < 1e-12);
+        assert!((slow(PieceBound { change: 2.5, ..piece(0.0, 0.0, 1.0) }) - 0.2).abs() < 1e-12);
         assert!((slow(piece(0.0, 0.0, 1.0)) - 0.8).abs() < 1e-12);
     }
 }

@@ -49,11 +49,16 @@ pub fn plan_among(
         return waits.map_err(Into::into);
     }
     let around = around(request, things, begins, &meeting, stop);
-    match (waits, around) {
-        (Ok(waits), Some(around)) => Ok(if around.duration() < waits.duration() { around } else { waits }),
-        (Err(_), Some(around)) => Ok(around),
-        (waits, None) => waits.map_err(Into::into),
+    let (mut chosen, aside) = match (waits, around) {
+        (Ok(waits), Some(around)) if around.duration() < waits.duration() => (around, Some(waits)),
+        (Ok(waits), around) => (waits, around),
+        (Err(_), Some(around)) => (around, Some(straight)),
+        (Err(error), None) => return Err(error.into()),
+    };
+    if let Some(aside) = aside {
+        chosen.reject(&aside);
     }
+    Ok(chosen)
 }
 
 /// A wait that takes no more than this much of the way's time is taken without looking further.

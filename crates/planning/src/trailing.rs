@@ -11,12 +11,12 @@
 //! is held clear by, and along a chord distances change by at most the way: [`Sweep`] halves it until that decides.
 
 use crate::convex::{Convex, apart, corners};
-use crate::formation_model::{BodyShape, FormationModel, HeadingLag, SLOWEST_SHARE};
+use crate::formation_model::{BodyShape, FormationModel, SLOWEST_SHARE};
 use crate::leg::{Leg, Piece};
 use crate::limits::TravelLimits;
 use crate::map::Map;
 use crate::mission::PlanRequest;
-use vocabulary::{Pose, math, wrap};
+use vocabulary::{PathFilter, Pose, math, wrap};
 
 /// A formation made ready: who is held against which heading.
 #[derive(Debug, Clone)]
@@ -41,7 +41,7 @@ pub(crate) struct Trailing {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct HeldHeading {
     leader: usize,
-    filter: Option<HeadingLag>,
+    filter: Option<PathFilter>,
 }
 
 /// Where all robots of a formation are, and what their headings remember.
@@ -76,7 +76,7 @@ impl Trailing {
             }
             of_robot.push([from, frames.len()]);
         }
-        let number = |leader: usize, filter: Option<HeadingLag>| {
+        let number = |leader: usize, filter: Option<PathFilter>| {
             frames.iter().position(|frame| *frame == HeldHeading { leader, filter }).unwrap_or(0)
         };
         let of_follower = model.followers().iter().map(|f| [f.leader, number(f.leader, f.heading)]);
@@ -206,7 +206,7 @@ impl Trailing {
             let [from, to] = self.of_robot[robot];
             for frame in from..to {
                 convoy.held[frame] = match self.frames[frame].filter {
-                    Some(HeadingLag { length, lag }) => {
+                    Some(PathFilter { length, lag }) => {
                         let left = 1.0 - lag / length;
                         [convoy.courses[robot] - lag * own, left * left * own]
                     }
@@ -297,16 +297,9 @@ impl Trailing {
     }
 }
 
-/// Gains of a filter: 1/λ, (2λ − τ)/λ², (1 − τ/λ)²/λ² and τ/λ².
-fn gains(filter: &HeadingLag) -> [f64; 4] {
-    let (square, root) = (filter.length * filter.length, 1.0 / filter.length);
-    let left = 1.0 - filter.lag * root;
-    [root, (2.0 * filter.length - filter.lag) / square, left * left / square, filter.lag / square]
-}
-
 /// Derivatives of [`advanced`].
-fn filter_slopes(filter: &HeadingLag, [held, kappa]: [f64; 2], heading: f64, way: f64) -> [[f64; 4]; 2] {
-    let [root, gain, rise, fall] = gains(filter);
+fn filter_slopes(filter: &PathFilter, [held, kappa]: [f64; 2], heading: f64, way: f64) -> [[f64; 4]; 2] {
+    let (root, gain, [rise, fall]) = (1.0 / filter.length, filter.gain(), filter.curvature_gains());
     let (e, decay) = (wrap(heading - held), math::exp(-root * way));
     let [drive, bend] = [(root - gain) * e - kappa, rise * e + (root - fall) * kappa];
     let behind = decay * (1.0 + way * (root - gain));
@@ -319,12 +312,9 @@ fn filter_slopes(filter: &HeadingLag, [held, kappa]: [f64; 2], heading: f64, way
     ]
 }
 
-/// A step of the filter for a heading that is held: exact, both roots are −1/λ.
-fn advanced(filter: &HeadingLag, [held, kappa]: [f64; 2], heading: f64, way: f64) -> [f64; 2] {
-    let [root, gain, rise, fall] = gains(filter);
-    let (e, decay) = (wrap(heading - held), math::exp(-root * way));
-    let behind = decay * (e + way * ((root - gain) * e - kappa));
-    let kappa = decay * (kappa + way * (rise * e + (root - fall) * kappa));
+/// A step of the filter for a heading that is held.
+fn advanced(filter: &PathFilter, [held, kappa]: [f64; 2], heading: f64, way: f64) -> [f64; 2] {
+    let [behind, kappa] = filter.step([wrap(heading - held), kappa], way);
     [heading - behind, kappa]
 }
 
@@ -337,6 +327,11 @@ impl Convoy {
     fn place(&self, leader: usize, frame: usize, [forward, left]: [f64; 2]) -> [f64; 2] {
         let ([sin, cos], [x, y]) = (self.axes[frame], self.positions[leader]);
         [x + cos * forward - sin * left, y + sin * forward + cos * left]
+    }
+
+    /// By how much the direction in which a robot drives changed in the last step, rad; 0 where it does not matter.
+    pub(crate) fn turned(&self, robot: usize) -> f64 {
+        self.turns[robot]
     }
 
     /// Poses of all robots, those of whom the direction matters with it.

@@ -1,13 +1,13 @@
 //! Maps and formations for trials: random obstacles on 40 m by 40 m, and seven in a V.
 
 use crate::convex::Convex;
-use crate::formation_model::{BodyShape, FollowerModel, FormationModel, HeadingLag};
+use crate::formation_model::{BodyShape, FollowerModel, FormationModel};
 use crate::map::Map;
 use crate::mission::{Mission, PlanGoal, PlanStart};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::{FRAC_PI_4, PI, SQRT_2};
-use vocabulary::Pose;
+use vocabulary::{PathFilter, Pose};
 
 /// Random numbers that are the same everywhere.
 #[derive(Debug, Clone)]
@@ -70,7 +70,7 @@ pub fn spread(seed: u64, count: usize, side: f64) -> Map {
 /// close like a zipper.
 pub fn vee() -> FormationModel {
     let body = BodyShape::Disc { radius: RADIUS };
-    let heading = Some(HeadingLag { length: 1.0, lag: 1.0 });
+    let heading = Some(PathFilter { length: 1.0, lag: 1.0 });
     let followers = (1..7).map(|robot: usize| {
         let side = if robot % 2 == 1 { 1.0 } else { -1.0 };
         let wide = [-SQRT_2, side * SQRT_2];

@@ -52,7 +52,7 @@ pub use gpu::camera_renderer::GpuCameraRenderer;
 pub use gpu::passes::texture::{TextureBinding, TexturePass};
 pub use gpu::{AdapterInfo, Gpu, draws_on_processor};
 pub use ground::trail::{Trail, free_places, set_points};
-pub use palette::robot_colours;
+pub use palette::{narrowing_colour, robot_colours};
 pub use picture_spec::PictureSpec;
 pub use renderer::Renderer;
 pub use style::Style;

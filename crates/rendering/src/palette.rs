@@ -1,7 +1,7 @@
 //! Colours: the robots' own, and those of ink and paper. Names of colours are sRGB, shading is linear.
 
-pub use vocabulary::colours::robot_colours;
 pub(crate) use vocabulary::colours::{Rgb, hex};
+pub use vocabulary::colours::{narrowing_colour, robot_colours};
 
 /// The stripe on robots without a leader.
 pub(crate) const GOLD: Rgb = hex(0x00e3_b341);

@@ -1,9 +1,12 @@
 //! Plans over random maps, driven with law and safety filter: how many are found, how many arrive, how many touch.
-//! `cargo run --release --locked -p simulation --example driven_maps [MAPS] [unicycle|car]`
+//! `cargo run --release --locked -p simulation --example driven_maps [MAPS] [unicycle|car] [OBSTACLES]`
+//! MAPS is a number of maps or a range of them, such as 14..15; one map alone prints its scene.
 
-use planning::{Convex, trial};
+#[path = "../tests/trial_scene/mod.rs"]
+mod trial_scene;
+
 use simulation::{BuildError, Simulation, build};
-use std::fmt::Write;
+use trial_scene::trial_scene;
 use vocabulary::{Contact, math};
 
 /// What became of the maps of one kind.
@@ -16,64 +19,11 @@ struct Row {
     late: Vec<u64>,
 }
 
-/// The scene of a map: seven in a V from one corner to the other.
-fn scene(seed: u64, count: usize, vehicle: &str) -> String {
-    let map = trial::map(seed, count);
-    let mut text = format!(
-        r#"schema = 1
-title = "Map {seed}"
-seed = {seed}
-[time]
-duration = 160.0
-[vehicle]
-kind = "{vehicle}"
-acceleration_max = 3.0
-turn_rate_max = 3.0
-[law]
-heading = "path"
-standing = true
-[proximity]
-range = 8.0
-[safety]
-filter = true
-[narrowing]
-narrows = true
-[[groups]]
-name = "robot"
-shape = "v"
-count = 7
-pose = [8.0, 8.0, "45 deg"]
-distance = 2.0
-scatter = 0.1
-path = {{ kind = "goal", pose = [33, 33, "45 deg"] }}
-"#
-    );
-    for (number, obstacle) in map.obstacles().iter().enumerate() {
-        // Writing to a text cannot fail.
-        let _ = writeln!(text, "[[props]]\nname = \"thing-{number}\"\n{}", solid(obstacle));
-    }
-    text
-}
-
-fn solid(obstacle: &Convex) -> String {
-    let [x, y] = obstacle.centre();
-    let corners: Vec<[f64; 2]> = obstacle.corners().collect();
-    let [a, b, c, ..] = corners.as_slice() else {
-        return format!(
-            "shape = \"cylinder\"\npose = [{x}, {y}, 0]\nradius = {}\nheight = 1.0",
-            obstacle.radius()
-        );
-    };
-    let side = |p: &[f64; 2], q: &[f64; 2]| math::hypot(q[0] - p[0], q[1] - p[1]);
-    let heading = math::atan2(b[1] - a[1], b[0] - a[0]);
-    format!("shape = \"block\"\npose = [{x}, {y}, {heading}]\nsize = [{}, {}, 1.0]", side(a, b), side(b, c))
-}
-
 fn drive(row: &mut Row, seed: u64, count: usize, vehicle: &str) -> Result<(), String> {
     row.maps += 1;
-    let scene = scene::Scene::parse(&scene(seed, count, vehicle), "map.toml", &[])
+    let read = scene::Scene::parse(&trial_scene(seed, count, vehicle), "map.toml", &[])
         .map_err(|fault| fault.to_string())?;
-    let setup = match build(&scene.scene) {
+    let setup = match build(&read.scene) {
         Ok(setup) => setup,
         Err(BuildError::Plan { why, .. }) => {
             println!("    map {seed}: {why}");
@@ -109,12 +59,22 @@ fn drive(row: &mut Row, seed: u64, count: usize, vehicle: &str) -> Result<(), St
 }
 
 fn main() -> Result<(), String> {
-    let maps = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(100);
-    let vehicle = std::env::args().nth(2).unwrap_or_else(|| "unicycle".into());
-    for count in [20, 50, 100] {
+    let given: Vec<String> = std::env::args().skip(1).collect();
+    let maps = given.first().map_or("100", |text| text);
+    let (first, last) = maps.split_once("..").unwrap_or(("0", maps));
+    let number = |text: &str| text.parse::<u64>().map_err(|_| format!("`{text}` is no number of maps"));
+    let (first, last) = (number(first)?, number(last)?);
+    let vehicle = given.get(1).map_or("unicycle", |text| text);
+    let counts: Vec<u64> =
+        given.get(2).map_or(Ok(vec![20, 50, 100]), |text| number(text).map(|count| vec![count]))?;
+    for count in counts {
+        let count = count as usize;
         let mut row = Row::default();
-        for seed in 0..maps {
-            drive(&mut row, seed, count, &vehicle)?;
+        if first + 1 == last {
+            println!("{}", trial_scene(first, count, vehicle));
+        }
+        for seed in first..last {
+            drive(&mut row, seed, count, vehicle)?;
         }
         println!(
             "{vehicle}, {count} obstacles: {} of {} planned, {} arrived, {} without contact; contact on {:?}, not there on {:?}",

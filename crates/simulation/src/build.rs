@@ -4,7 +4,7 @@ use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
 use crate::events::event_plan;
 use crate::filing::edge_laws;
-use crate::goals::{goals, wishes};
+use crate::goals::{Goals, goals, wishes};
 use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::safety::SafetyConfig;
 use crate::setup::Setup;
@@ -24,16 +24,8 @@ use world::{Unicycle, WorldSetup};
 /// # Errors
 /// [`BuildError`], naming the robots.
 pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
-    let names: Vec<&str> = scene.robots.iter().map(|r| &*r.name).collect();
-    let pairs: Vec<(&str, &str)> = scene.edges().map(|(name, _, leader)| (&*leader.name, name)).collect();
-    let mut graph = Graph::new(&names, &pairs)?;
+    let graph = graph_of(scene)?;
     let joining = scene.joining();
-    for (name, follow) in &joining {
-        let ends = [&*follow.leaders.first.name, *name].map(|name| scene.index_of(name));
-        if let [Some(leader), Some(follower)] = ends {
-            graph.add_waiting(Edge { leader, follower });
-        }
-    }
     // One entry per edge, in the order of the graph's.
     let later = joining.iter().map(|(name, follow)| (*name, follow));
     let followers: Vec<(&str, &Follow)> =
@@ -41,7 +33,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     check_continuous(scene, &followers)?;
 
     let laws = edge_laws(scene);
-    let goals = goals(scene, &graph, &laws)?;
+    let goals = goals(scene, &graph, &laws, false)?;
     let mut stage = stage(scene, &goals)?;
     let leading = stage.actors.iter().enumerate();
     let leads = leading.filter_map(|(index, actor)| Some((index, actor.robot.lead.clone()?))).collect();
@@ -107,6 +99,28 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
         duration: scene.time.duration,
         changes,
     })
+}
+
+/// The plans of a scene once more, with what the searches for them looked at.
+///
+/// # Errors
+/// Those of [`build`].
+pub fn recorded_plans(scene: &Scene) -> Result<Goals, BuildError> {
+    goals(scene, &graph_of(scene)?, &edge_laws(scene), true)
+}
+
+/// Who follows whom, and who joins later.
+fn graph_of(scene: &Scene) -> Result<Graph, BuildError> {
+    let names: Vec<&str> = scene.robots.iter().map(|r| &*r.name).collect();
+    let pairs: Vec<(&str, &str)> = scene.edges().map(|(name, _, leader)| (&*leader.name, name)).collect();
+    let mut graph = Graph::new(&names, &pairs)?;
+    for (name, follow) in scene.joining() {
+        let ends = [&*follow.leaders.first.name, name].map(|name| scene.index_of(name));
+        if let [Some(leader), Some(follower)] = ends {
+            graph.add_waiting(Edge { leader, follower });
+        }
+    }
+    Ok(graph)
 }
 
 /// A scene as it begins, and as each of its changes leaves it.

@@ -28,7 +28,7 @@ mod standstill;
 mod step;
 
 pub use batch::BatchError;
-pub use build::{build, edge_law};
+pub use build::{build, edge_law, recorded_plans};
 pub use caption::{caption, short};
 pub use drivable::Undrivable;
 pub use error::BuildError;
@@ -38,7 +38,7 @@ pub use gates::{Gate, gates, narrowest};
 pub use goals::{GoalWish, Goals, PlannedMotion, PlannedPart};
 pub use in_line::in_line;
 pub use parameters::{ParameterSet, ScheduledChange};
-pub use planning::{MotionPlan, PlanPoint};
+pub use planning::{MotionPlan, PlanPoint, SearchRecord};
 pub use safety::SafetyConfig;
 pub use setup::Setup;
 pub use simulation::Simulation;

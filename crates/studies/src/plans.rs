@@ -2,6 +2,7 @@
 
 use crate::SceneRun;
 use serde::Serialize;
+use simulation::{BuildError, Goals, SearchRecord};
 use vocabulary::Pose;
 
 /// The way of a lead robot to one of its goals.
@@ -30,6 +31,9 @@ pub struct PlannedWay {
     /// Points along it.
     #[serde(skip)]
     pub rows: Vec<PlannedRow>,
+    /// What the search for it looked at, if that was recorded.
+    #[serde(skip)]
+    pub record: SearchRecord,
 }
 
 /// A point of a way.
@@ -51,10 +55,22 @@ pub struct PlannedRow {
 
 /// The ways of all lead robots that have goals, in the order of robots and goals.
 pub fn plans(run: &SceneRun) -> Vec<PlannedWay> {
+    ways(run, run.simulation.goals())
+}
+
+/// The same, planned once more, with what the searches looked at.
+///
+/// # Errors
+/// There is no way.
+pub fn recorded_plans(run: &SceneRun) -> Result<Vec<PlannedWay>, BuildError> {
+    Ok(ways(run, &simulation::recorded_plans(&run.scene)?))
+}
+
+fn ways(run: &SceneRun, goals: &Goals) -> Vec<PlannedWay> {
     let names = &run.simulation.fleet().robots;
     let mut ways = vec![];
     let mut before: Vec<String> = vec![];
-    for (lead, motion) in run.simulation.goals().motions() {
+    for (lead, motion) in goals.motions() {
         let robots: Vec<String> = motion.robots.iter().map(|robot| names[*robot].name.clone()).collect();
         let column = motion.levels.saturating_sub(1).max(1) as f64;
         for part in motion.parts() {
@@ -80,6 +96,7 @@ pub fn plans(run: &SceneRun) -> Vec<PlannedWay> {
                 expansions: plan.expansions,
                 digest: format!("{:016x}", plan.digest()),
                 rows,
+                record: plan.record.clone(),
             });
         }
         before.push(names[lead].name.clone());

@@ -36,3 +36,13 @@ pub fn robot_colours(fleet: &FleetInfo) -> Vec<Rgb> {
     };
     fleet.robots.iter().map(|member| colour(member.leads)).collect()
 }
+
+/// Ground that a formation sweeps in its shape, and in its column.
+const SHAPE: Rgb = hex(0x002f_7fd6);
+const COLUMN: Rgb = hex(0x00e0_7b1f);
+
+/// Colour of a formation narrowed by a share: 0 in its shape, 1 in its column.
+pub fn narrowing_colour(narrowing: f64) -> Rgb {
+    let narrow = narrowing.clamp(0.0, 1.0) as f32;
+    [0, 1, 2].map(|k| SHAPE[k] + narrow * (COLUMN[k] - SHAPE[k]))
+}

@@ -2,13 +2,10 @@
 //! the lead.
 
 use super::annotations::{AnnotationStroke, Annotations, Ring, StrokePoint};
-use crate::palette::{Rgb, hex};
+use crate::palette::narrowing_colour;
 use crate::picture_context::PictureContext;
 use vocabulary::{PlannedPath, PlannedPoint, Pose};
 
-/// Of the shape, and of the column.
-const SHAPE: Rgb = hex(0x002f_7fd6);
-const COLUMN: Rgb = hex(0x00e0_7b1f);
 /// Opacity of the ground to sweep, and of the way of the lead.
 const SWEPT: f32 = 0.16;
 const WAY: f32 = 0.8;
@@ -52,7 +49,7 @@ fn goal(plan: &PlannedPath, context: &PictureContext<'_>) -> Option<Ring> {
     let body = &context.fleet.robots.get(lead)?.body;
     let pose = last.poses.first()?;
     let at = pose.world_from_body(0.5 * body.wheelbase, 0.0);
-    let colour = context.colours.get(lead).copied().unwrap_or(SHAPE);
+    let colour = context.colours.get(lead).copied().unwrap_or(narrowing_colour(0.0));
     Some(Ring { fill: 0.1, ..Ring::new(at, 0.75 * body.length, colour) })
 }
 
@@ -74,8 +71,7 @@ fn spread(points: &[PlannedPoint]) -> Vec<&PlannedPoint> {
 
 fn strokes(points: &[&PlannedPoint], robot: usize, middle: f64, alpha: f32) -> Vec<StrokePoint> {
     let spot = |point: &&PlannedPoint| {
-        let narrow = point.narrowing.clamp(0.0, 1.0) as f32;
-        let colour = [0, 1, 2].map(|k| SHAPE[k] + narrow * (COLUMN[k] - SHAPE[k]));
+        let colour = narrowing_colour(point.narrowing);
         let at = point.poses.get(robot)?.world_from_body(middle, 0.0);
         Some(StrokePoint { at, colour, alpha })
     };

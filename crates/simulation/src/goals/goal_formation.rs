@@ -2,8 +2,9 @@
 
 use formation::column::{cartesian, column};
 use formation::{EdgeLaw, Graph, Heading};
-use planning::{BodyShape, FollowerModel, FormationModel, HeadingLag, InputError, TravelLimits};
+use planning::{BodyShape, FollowerModel, FormationModel, InputError, TravelLimits};
 use scene::{Travel, Vehicle};
+use vocabulary::{Limits, PathFilter};
 
 /// A lead robot and all that follow it.
 pub(super) struct GoalFormation {
@@ -12,15 +13,15 @@ pub(super) struct GoalFormation {
     pub(super) followers: Vec<FormationMember>,
 }
 
-/// A follower of a convoy.
+/// A follower in the formation.
 pub(super) struct FormationMember {
     /// Number of its edge.
     pub(super) edge: usize,
-    /// Place of its leader in the convoy.
+    /// Place of its leader among the robots.
     leader: usize,
     /// [forward, left] of its leader in the shape and in the column, m; only the first where it does not file in.
     places: [Option<[f64; 2]>; 2],
-    pub(super) heading: Option<HeadingLag>,
+    pub(super) heading: Option<PathFilter>,
     /// How fast its place moves, m/s, and how strongly that changes, m/s².
     moves: Option<[f64; 2]>,
 }
@@ -43,7 +44,7 @@ impl GoalFormation {
             place_of[edge.follower] = Some(robots.len());
             robots.push(edge.follower);
             let heading = match law.law.heading {
-                Heading::Path(filter) => Some(HeadingLag { length: filter.length, lag: filter.lag }),
+                Heading::Path(filter) => Some(filter),
                 Heading::Leader => None,
             };
             followers.push(FormationMember {
@@ -95,6 +96,10 @@ impl GoalFormation {
         let speed = travel.speed.min(limits.speed_max);
         let outer = if self.robots.len() > 1 { SPEED_USED * outer } else { speed.max(usual.outer) };
         let tightest = followers().map(|limits| limits.curvature_max).fold(f64::INFINITY, f64::min);
+        let least =
+            |of: fn(&Limits) -> f64| followers().map(|limits| of(&limits)).fold(f64::INFINITY, f64::min);
+        let turn_rate = least(|limits| limits.turn_rate_max);
+        let gains = least(|limits| limits.acceleration_max);
         let moves = |k: usize, otherwise: f64| {
             let own = self.followers.iter().filter_map(|follower| Some(follower.moves?[k]));
             own.min_by(f64::total_cmp).unwrap_or(otherwise)
@@ -111,6 +116,8 @@ impl GoalFormation {
             outer,
             turning: speed.min(outer),
             follower_curvature: tightest.is_finite().then_some(STEERING_USED * tightest),
+            follower_turn_rate: turn_rate.is_finite().then_some(STEERING_USED * turn_rate),
+            follower_acceleration: gains.is_finite().then_some(CHANGES_USED * gains),
             place_rate: moves(0, usual.place_rate),
             place_acceleration: moves(1, usual.place_acceleration),
             reverses: false,
@@ -126,6 +133,8 @@ const USUAL_LENGTH: f64 = 0.42;
 const STEERING_USED: f64 = 0.8;
 /// The same of the speed of followers.
 const SPEED_USED: f64 = 0.9;
+/// What a plan uses of what followers can gain and brake, where their places on a curve ask for it. Lead and law ask for more.
+const CHANGES_USED: f64 = 0.5;
 /// Nobody is taken to be faster, m/s.
 const FASTEST: f64 = 1000.0;
 /// A body's middle is half a wheelbase ahead of the pose.

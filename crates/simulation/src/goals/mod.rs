@@ -82,11 +82,16 @@ impl Goals {
     }
 }
 
-/// Plans for all lead robots that have goals.
+/// Plans for all lead robots that have goals; whether it is recorded what the searches look at is for pictures.
 ///
 /// # Errors
 /// There is no way to a goal: with the reason, and with what there is a way for.
-pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Goals, BuildError> {
+pub(crate) fn goals(
+    scene: &Scene,
+    graph: &Graph,
+    laws: &[EdgeLaw],
+    records: bool,
+) -> Result<Goals, BuildError> {
     let mut asked = wishes(&scene.robots);
     if asked.is_empty() {
         return Ok(Goals::default());
@@ -108,7 +113,9 @@ pub(crate) fn goals(scene: &Scene, graph: &Graph, laws: &[EdgeLaw]) -> Result<Go
         let convoy = GoalFormation::of(graph, laws, lead, 0.0);
         let model = convoy.model(&vehicles).map_err(|error| invalid(lead, &error))?;
         let limits = convoy.limits(&vehicles, &wish.travel);
-        let task = PlanTask { model: &model, limits, standing: &standing, moving: &moving };
+        let filtered = convoy.robots.iter().any(|robot| rooms[*robot] > 0.0);
+        let task =
+            PlanTask { model: &model, limits, standing: &standing, moving: &moving, filtered, records };
         let departure = Departure { start: PlanStart::at(scene.robots[lead].pose), held: None, time: 0.0 };
         let parts = wish.parts(&task, &departure, 0, wish.clearance(&rooms, &convoy.robots)).map_err(
             |(goal, error)| {

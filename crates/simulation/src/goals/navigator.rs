@@ -70,6 +70,10 @@ pub(super) struct PlanTask<'a> {
     pub(super) limits: TravelLimits,
     pub(super) standing: &'a [(EntityId, Convex)],
     pub(super) moving: &'a [(EntityId, MovingThing)],
+    /// Whether safety filters keep its robots off things.
+    pub(super) filtered: bool,
+    /// Whether it is recorded what searches look at.
+    pub(super) records: bool,
 }
 
 /// Where and how a formation is when it begins to plan.
@@ -83,13 +87,41 @@ pub(super) struct Departure {
 
 /// Robots whose filters keep less free stay off things by this, m.
 const LEAST_CLEARANCE: f64 = 0.25;
+/// What plans leave beside that where there is a way, m: filters let robots come to their edge only slowly, and who is held up
+/// there is late for its place and in the way of those behind.
+const EASE: f64 = 0.15;
+/// How much longer such a way may take.
+const LONGER: f64 = 1.25;
 
 impl GoalWish {
-    /// Plans to all goals from number `next` on.
+    /// Plans to all goals from number `next` on, `clearance` m off all things and, where filters act, farther off if that is not
+    /// much longer.
     ///
     /// # Errors
     /// The number of the goal that there is no way to, and why.
     pub(super) fn parts(
+        &self,
+        task: &PlanTask<'_>,
+        departure: &Departure,
+        next: usize,
+        clearance: f64,
+    ) -> Result<Vec<PlannedPart>, (usize, PlanError)> {
+        let near = self.parts_off(task, departure, next, clearance)?;
+        if !task.filtered || self.travel.clearance.is_some() {
+            return Ok(near);
+        }
+        let lasts = |parts: &[PlannedPart]| parts.iter().map(|part| part.plan.duration()).sum::<f64>();
+        let Ok(far) = self.parts_off(task, departure, next, clearance + EASE) else { return Ok(near) };
+        let is_long = lasts(&far) > LONGER * lasts(&near);
+        let (mut chosen, aside) = if is_long { (near, far) } else { (far, near) };
+        for (part, aside) in chosen.iter_mut().zip(&aside) {
+            part.plan.reject(&aside.plan);
+        }
+        Ok(chosen)
+    }
+
+    /// Plans to all goals from number `next` on, `clearance` m off all things.
+    fn parts_off(
         &self,
         task: &PlanTask<'_>,
         departure: &Departure,
@@ -103,10 +135,11 @@ impl GoalWish {
         let mut parts: Vec<PlannedPart> = vec![];
         for (number, goal) in self.goals.iter().enumerate().skip(next) {
             let mission = Mission { start, goal: *goal };
-            let request = PlanRequest {
+            let mut request = PlanRequest {
                 held: held.as_deref(),
                 ..PlanRequest::new(&map, task.model, task.limits, mission)
             };
+            request.effort.records = task.records;
             let plan =
                 plan_among(&request, &things, time, &mut |_| false).map_err(|error| (number, error))?;
             if let Some(end) = plan.points.last() {

@@ -312,7 +312,9 @@ fn plan_again(
     let vehicles = run.goals.vehicles.clone();
     let model = convoy.model(&vehicles)?;
     let limits = convoy.limits(&vehicles, &navigator.wish.travel);
-    let task = PlanTask { model: &model, limits, standing: &found.standing, moving: &found.moving };
+    let filtered = convoy.robots.iter().any(|robot| run.goals.rooms[*robot] > 0.0);
+    let (standing, moving) = (&found.standing, &found.moving);
+    let task = PlanTask { model: &model, limits, standing, moving, filtered, records: false };
     let departure = departure(run, navigator, convoy, &model, &limits, time);
     let wish = navigator.wish.clone();
     let clearance = wish.clearance(&run.goals.rooms, &convoy.robots);
