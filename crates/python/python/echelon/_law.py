@@ -142,7 +142,7 @@ class Caller:
         """The commands of the `robots` at a sample, as an array that is checked."""
         names = [self.robots[robot] for robot in robots]
         index = np.array([self._places[robot] for robot in robots])
-        numbers.flags.writeable = False
+        numbers.setflags(write=False)
         told = Observations(numbers, names, index, np.array(meets), self.period, self.knows)
 
         def fault(text: str, robot: str | None = None) -> LawError:
