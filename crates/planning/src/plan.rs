@@ -312,13 +312,13 @@ impl Course {
             // From the middle of the piece before to that of this one.
             let span = 0.5 * (before + piece.length);
             let [mut turn, mut change] = [0.0_f64; 2];
-            for robot in 1..trailing.robots() {
+            for (robot, last) in ratios.iter_mut().enumerate().skip(1) {
                 let ratio = convoy.moved[robot] / piece.length;
                 turn = turn.max(convoy.turned(robot).abs() / span);
                 if before > 0.0 {
-                    change = change.max((ratio - ratios[robot]).abs() / span);
+                    change = change.max((ratio - *last).abs() / span);
                 }
-                ratios[robot] = ratio;
+                *last = ratio;
             }
             before = piece.length;
             bounds.push(PieceBound {
