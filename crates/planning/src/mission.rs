@@ -4,7 +4,7 @@ use crate::error::{InputError, checked};
 use crate::formation_model::FormationModel;
 use crate::limits::TravelLimits;
 use crate::map::Map;
-use vocabulary::Pose;
+use vocabulary::{Pose, math};
 
 /// Where a plan begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,6 +172,9 @@ impl Default for SearchEffort {
     }
 }
 
+/// Farther goals are refused, m: a grid of that size is made for the search.
+const FARTHEST: f64 = 2000.0;
+
 impl Mission {
     /// Holds every number against a formation's levels and its limits.
     ///
@@ -194,6 +197,9 @@ impl Mission {
         for (what, value) in poses {
             checked(value, true, || what.into(), "finite")?;
         }
+        let away = math::hypot(goal.position[0] - start.pose.x, goal.position[1] - start.pose.y);
+        let range = "at most 2000 m: set goals between";
+        checked(away, away <= FARTHEST, || "the distance to the goal in m".into(), range)?;
         let fits = start.curvature.abs() <= limits.curvature;
         checked(start.curvature, fits, || "the start's curvature".into(), "within the vehicle's, 1/m")?;
         let fits = (0.0..=limits.speed).contains(&start.speed);

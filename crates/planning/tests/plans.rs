@@ -405,6 +405,10 @@ fn input_that_makes_no_sense_is_refused() {
         ask(at(mission.goal.at_level(7)), limits),
         "the goal asks for level 7, but the formation has levels 0 to 4"
     );
+    assert_eq!(
+        ask(at(PlanGoal::to([8.0, 4008.0])), limits),
+        "the distance to the goal in m is 4000, but has to be at most 2000 m: set goals between"
+    );
     let reverses = TravelLimits { reverses: true, ..limits };
     assert_eq!(
         ask(mission, reverses),
