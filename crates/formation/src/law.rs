@@ -134,7 +134,7 @@ fn sign(x: f64) -> f64 {
 
 #[cfg(test)]
 pub(crate) fn test_law() -> Law {
-    use crate::path_heading::PathFilter;
+    use vocabulary::PathFilter;
     Law {
         kind: LawKind::OutputFeedback,
         gain: [5.0; 2],
