@@ -181,6 +181,8 @@ fn nothing_that_is_asked_brings_the_planner_down() {
             outer: draw(1.6),
             turning: draw(0.8),
             follower_curvature: (k % 5 == 0).then(|| draw(0.9)),
+            follower_turn_rate: (k % 3 == 0).then(|| draw(2.0)),
+            follower_acceleration: (k % 7 == 0).then(|| draw(1.0)),
             place_rate: draw(0.25),
             place_acceleration: draw(0.4),
             reverses: k % 4 == 0,

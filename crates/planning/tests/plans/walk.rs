@@ -8,10 +8,10 @@ use vocabulary::{Pose, math, wrap};
 pub(crate) struct Walk {
     lead: Pose,
     /// θ̄ and κ̄ of every follower.
-    held: Vec<[f64; 2]>,
-    positions: Vec<[f64; 2]>,
+    pub(crate) held: Vec<[f64; 2]>,
+    pub(crate) positions: Vec<[f64; 2]>,
     /// Velocity per speed of the lead.
-    velocities: Vec<[f64; 2]>,
+    pub(crate) velocities: Vec<[f64; 2]>,
     /// Way of the lead in a step, m.
     step: f64,
 }
