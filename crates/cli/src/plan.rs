@@ -124,7 +124,7 @@ fn picture(run: &SceneRun, ways: &[PlannedWay]) -> Plan {
             points: points.clone(),
             colour: REJECTED,
             stroke: Stroke::Dashed,
-            faint: false,
+            faint: true,
         }));
         for (k, robot) in way.robots.iter().enumerate().rev() {
             tracks.push(PlanPath {
@@ -136,7 +136,7 @@ fn picture(run: &SceneRun, ways: &[PlannedWay]) -> Plan {
                     .collect(),
                 colour: if k == 0 { [0.1; 3] } else { colour(robot) },
                 stroke: Stroke::Solid,
-                faint: false,
+                faint: k > 0,
             });
         }
     }

@@ -235,7 +235,7 @@ impl Plan {
             svg.path(
                 &d,
                 &format!(
-                    "fill=\"none\" stroke=\"{colour}\" stroke-opacity=\"0.22\" stroke-width=\"{width:.2}\" \
+                    "fill=\"none\" stroke=\"{colour}\" stroke-opacity=\"0.4\" stroke-width=\"{width:.2}\" \
                      stroke-linejoin=\"round\""
                 ),
             );
