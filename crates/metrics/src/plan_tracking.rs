@@ -72,13 +72,15 @@ mod tests {
             poses: vec![Pose::default(), Pose::new(x, 1.0, 0.0)],
             ..PlannedPoint::default()
         };
-        let path = PlannedPath { robots: vec![2, 0], points: vec![point(1.0, 0.0), point(3.0, 4.0)] };
+        let starts = PlannedPoint { speed: 4.0, ..point(1.0, 0.0) };
+        let path = PlannedPath { robots: vec![2, 0], points: vec![starts, point(3.0, 4.0)] };
         let mut sums = vec![PlanTrackingSums::default(); 3];
         let mut record = StepRecord::default();
         record.snapshot.robots = vec![RobotState::default(); 3];
         record.plans = vec![Arc::new(path)];
         // Before it begins the plan has the robot where it starts, after its end where it stops.
-        for (time, x) in [(0.0, 0.0), (2.0, 2.0), (9.0, 7.0)] {
+        // Braking evenly it has gone three quarters of the way after half of the time.
+        for (time, x) in [(0.0, 0.0), (2.0, 3.0), (9.0, 7.0)] {
             record.snapshot.time = time;
             record.snapshot.robots[0].motion.pose = Pose::new(x, 1.0, 0.0);
             PlanTrackingSums::push(&mut sums, &record);
