@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::load::{load, stem};
 use crate::print::{json, say};
 use clap::Args;
-use figures::{Key, Marker, Plan, PlanDots, PlanOutline, PlanPath, PlanStrip, Rgb, Stroke};
+use figures::{Key, Marker, Plan, PlanDots, PlanNode, PlanOutline, PlanPath, PlanStrip, Rgb, Stroke};
 use output::{Place, write_whole};
 use rendering::narrowing_colour;
 use serde_json::json;
@@ -47,13 +47,13 @@ pub(crate) fn plan(args: &PlanArgs) -> Outcome {
         json(&json!({ "scene": stem(&args.scene.scene), "ways": ways }));
     } else if !args.scene.quiet {
         for way in &ways {
-            say(&line(way));
+            say(&line(way, run.scene.time.duration));
         }
     }
     Ok(())
 }
 
-fn line(way: &PlannedWay) -> String {
+fn line(way: &PlannedWay, duration: f64) -> String {
     let shape = match way.narrowest {
         0.0 => "in its shape throughout".to_owned(),
         1.0 => "down to its column".to_owned(),
@@ -63,8 +63,9 @@ fn line(way: &PlannedWay) -> String {
         [] => String::new(),
         leads => format!("; yields to {}", leads.join(" and ")),
     };
+    let late = if way.begins + way.duration > duration { "; the run ends before it is there" } else { "" };
     format!(
-        "{} {}: {:.1} m in {:.1} s from {:.1} s on; {}, {shape}{yields}; {} swept",
+        "{} {}: {:.1} m in {:.1} s from {:.1} s on; {}, {shape}{yields}{late}; {} swept",
         way.lead,
         way.goal.map_or_else(|| "to a stand".to_owned(), |goal| format!("to goal {goal}")),
         way.length,
@@ -143,7 +144,13 @@ fn picture(run: &SceneRun, ways: &[PlannedWay]) -> Plan {
     let outlines = run.scene.props.iter().map(|prop| PlanOutline {
         points: outline(prop.pose, &prop.solid),
         colour: [0.45; 3],
-        filled: 0.5,
+        // What is found on the way is not in the plan.
+        filled: if prop.known { 0.5 } else { 0.0 },
+    });
+    let goals = ways.iter().filter_map(|way| {
+        let [x, y] = way.rows.last()?.poses.first().map(|pose| [pose.x, pose.y])?;
+        let name = way.goal.filter(|_| ways.len() > 1).map_or_else(String::new, |goal| goal.to_string());
+        Some(PlanNode { at: [x, y], name, radius: 5.0, colour: [0.1; 3], filled: false })
     });
     Plan {
         title: format!("{}: the plan", run.scene.title),
@@ -152,6 +159,7 @@ fn picture(run: &SceneRun, ways: &[PlannedWay]) -> Plan {
         dots,
         tracks,
         outlines: outlines.collect(),
+        nodes: goals.collect(),
         keys: keys(ways),
         width: 170.0,
         height: 140.0,

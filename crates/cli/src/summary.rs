@@ -77,8 +77,12 @@ fn plans(scene: &Scene, metrics: &Metrics) {
     for lead in leads {
         let kept = metrics.robots.iter().find(|robot| robot.robot == lead.name).and_then(|robot| robot.plan);
         if let Some(plan) = kept {
+            let left = match plan.time_left {
+                0.0 => String::new(),
+                left => format!("; {left:.1} s of it are left at the end of the run"),
+            };
             say(&format!(
-                "{} keeps to its plan within {:.3} m, root mean square {:.3} m",
+                "{} keeps to its plan within {:.3} m, root mean square {:.3} m{left}",
                 lead.name, plan.error_max, plan.error_rms
             ));
         }

@@ -15,6 +15,10 @@ pub struct PlanTrackingMetrics {
     pub error_max_time: f64,
     /// Root mean square, m.
     pub error_rms: f64,
+    /// Whether it leads by that plan.
+    pub leads: bool,
+    /// How much of it was left at the end, s.
+    pub time_left: f64,
 }
 
 /// Running sums of one robot.
@@ -25,6 +29,8 @@ pub(crate) struct PlanTrackingSums {
     squares: RootMeanSquare<1>,
     /// Farthest, m, and when, s.
     farthest: [f64; 2],
+    /// How much of the plan is left, s.
+    left: f64,
 }
 
 impl PlanTrackingSums {
@@ -45,6 +51,7 @@ impl PlanTrackingSums {
                 continue;
             };
             let Some([x, y]) = path.place_at(*place, time) else { continue };
+            sums.left = path.points.last().map_or(0.0, |last| (last.time - time).max(0.0));
             let off = math::hypot(robot.motion.pose.x - x, robot.motion.pose.y - y);
             sums.squares.add([off]);
             if off > sums.farthest[0] {
@@ -56,7 +63,8 @@ impl PlanTrackingSums {
     pub(crate) fn finish(&self) -> Option<PlanTrackingMetrics> {
         let [error_rms] = self.squares.root()?;
         let [error_max, error_max_time] = self.farthest;
-        Some(PlanTrackingMetrics { error_max, error_max_time, error_rms })
+        let leads = self.path.as_ref().is_some_and(|(_, place)| *place == 0);
+        Some(PlanTrackingMetrics { error_max, error_max_time, error_rms, leads, time_left: self.left })
     }
 }
 
@@ -89,6 +97,8 @@ mod tests {
         let found = sums[0].finish().expect("a plan");
         assert_eq!((found.error_max, found.error_max_time), (3.0, 9.0));
         assert!((found.error_rms - 3.0_f64.sqrt()).abs() < 1e-15);
+        assert!(!found.leads && sums[2].finish().is_some_and(|lead| lead.leads));
+        assert_eq!(found.time_left, 0.0);
         assert_eq!(sums[1].finish(), None);
     }
 }

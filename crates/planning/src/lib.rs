@@ -54,7 +54,7 @@ pub use gap::Gap;
 pub use leg::{CurvatureKnot, Leg};
 pub use limits::TravelLimits;
 pub use map::{Boundary, Map};
-pub use meeting::{Meeting, first_meeting};
+pub use meeting::{Meeting, Schedule, first_meeting};
 pub use mission::{CostWeights, Mission, PlanGoal, PlanRequest, PlanStart, SearchEffort};
 pub use moving::{MovingThing, TrackPoint};
 pub use offer::{NoWay, NoWayReason, Offer};

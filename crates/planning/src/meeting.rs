@@ -47,14 +47,34 @@ pub fn first_meeting(
     })
 }
 
-/// The same, of a request's formation and with its map's clearance.
+/// When a plan begins, and how long the formation stays at its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Schedule {
+    /// s.
+    pub begins: f64,
+    /// s; infinite where it stays for good.
+    pub stays: f64,
+}
+
+impl Schedule {
+    /// A plan that begins at `begins` s, at whose end the formation stays.
+    pub fn at(begins: f64) -> Self {
+        Self { begins, stays: f64::INFINITY }
+    }
+}
+
+/// The same, of a request's formation and with its map's clearance, on the way and while it stays at the end.
 pub(crate) fn meeting_of(
     plan: &MotionPlan,
     request: &PlanRequest<'_>,
     things: &[MovingThing],
-    begins: f64,
+    schedule: Schedule,
 ) -> Option<Meeting> {
-    first_meeting(plan, request.model, &request.limits, request.map.clearance(), things, begins, 0.0)
+    let (model, limits, clearance) = (request.model, &request.limits, request.map.clearance());
+    first_meeting(plan, model, limits, clearance, things, schedule.begins, 0.0).or_else(|| {
+        let traffic = Traffic::new(plan, model, limits, clearance, things, schedule.begins);
+        traffic.meetings_at_the_end(plan.duration(), schedule.stays).next()
+    })
 }
 
 /// A stretch of the way that is driven with one acceleration.
@@ -85,6 +105,8 @@ pub(crate) struct Traffic<'a> {
     robots_fastest: f64,
 }
 
+/// A formation that stays is looked at in stretches of this, s.
+pub(crate) const MOMENT: f64 = 0.5;
 /// Where distances do not decide, they are looked at again after this share of a stretch.
 const LEAST_SHARE: f64 = 1.0 / 16.0;
 
@@ -149,6 +171,19 @@ impl<'a> Traffic<'a> {
             }
             gone = (gone + free.max(LEAST_SHARE * stretch.lasts)).min(stretch.lasts);
         }
+    }
+
+    /// Meetings of a formation that stays at the end of the way from `from` s on for `stays` s, moment by moment, until everything
+    /// stands.
+    pub(crate) fn meetings_at_the_end(&self, from: f64, stays: f64) -> impl Iterator<Item = Meeting> {
+        let way = self.points.last().map_or(0.0, |point| point.way);
+        let until = self.rests_at().max(from).min(from + stays);
+        let moments = if self.things.is_empty() { 0 } else { ((until - from) / MOMENT).ceil() as usize + 1 };
+        (0..moments).filter_map(move |k| {
+            let time = from + MOMENT * k as f64;
+            let stretch = TimedStretch { way, speed: 0.0, acceleration: 0.0, time, lasts: MOMENT };
+            self.meets(&stretch, &mut self.points.len())
+        })
     }
 
     /// Distance of the formation to a thing, m, and the robot that is nearest. What is farther than needs be known is a bound

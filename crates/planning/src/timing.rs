@@ -5,7 +5,7 @@
 //! of a T²/2 of the way with a multiple of a T of speed, and what can be reached is a graph. A* finds the earliest arrival in
 //! it; the estimate is the time that the way takes where nothing moves.
 
-use crate::meeting::{Meeting, TimedStretch, Traffic, meeting_of};
+use crate::meeting::{MOMENT, Meeting, Schedule, TimedStretch, Traffic, meeting_of};
 use crate::mission::PlanRequest;
 use crate::moving::MovingThing;
 use crate::plan::{MotionPlan, PlanPoint};
@@ -28,27 +28,27 @@ const CALM: f64 = 0.05;
 /// States that are looked at, at most.
 const STATES_MOST: usize = 400_000;
 
-/// Plans a way among `things` that move, for a formation that sets out at `begins` s. It goes at other speeds, or waits, where it
-/// would meet them; or it goes around where it would, if it arrives earlier by that.
+/// Plans a way among `things` that move, for a formation with a schedule. It goes at other speeds, or waits, where it would
+/// meet them, on the way or at its end; or it goes around where it would, if it arrives earlier by that.
 ///
 /// # Errors
 /// As [`plan`]. Where there is a way but no time for it: [`PlanError::Meets`].
 pub fn plan_among(
     request: &PlanRequest<'_>,
     things: &[MovingThing],
-    begins: f64,
+    schedule: Schedule,
     stop: &mut dyn FnMut(usize) -> bool,
 ) -> Result<MotionPlan, PlanError> {
     let straight = plan(request, stop)?;
-    let Some(meeting) = meeting_of(&straight, request, things, begins) else { return Ok(straight) };
+    let Some(meeting) = meeting_of(&straight, request, things, schedule) else { return Ok(straight) };
     let longest = straight.duration();
-    let waits = timed_among(&straight, request, things, begins);
+    let waits = timed_among(&straight, request, things, schedule);
     if let Ok(timed) = &waits
         && timed.duration() <= SOON * longest
     {
         return waits.map_err(Into::into);
     }
-    let around = around(request, things, begins, &meeting, stop);
+    let around = around(request, things, schedule, &meeting, stop);
     let (mut chosen, aside) = match (waits, around) {
         (Ok(waits), Some(around)) if around.duration() < waits.duration() => (around, Some(waits)),
         (Ok(waits), around) => (waits, around),
@@ -72,21 +72,21 @@ const WINDOW: f64 = 4.0;
 fn around(
     request: &PlanRequest<'_>,
     things: &[MovingThing],
-    begins: f64,
+    schedule: Schedule,
     meeting: &Meeting,
     stop: &mut dyn FnMut(usize) -> bool,
 ) -> Option<MotionPlan> {
     let mut map = request.map.clone();
     let mut meeting = *meeting;
     for _ in 0..TRIES {
-        let time = begins + meeting.time;
+        let time = schedule.begins + meeting.time;
         map = map.with(things[meeting.thing].swept(time - WINDOW, time + WINDOW));
         let request = PlanRequest { map: &map, ..*request };
         let found = plan(&request, stop).ok()?;
-        match meeting_of(&found, &request, things, begins) {
+        match meeting_of(&found, &request, things, schedule) {
             None => return Some(found),
             Some(next) => {
-                if let Ok(timed) = timed_among(&found, &request, things, begins) {
+                if let Ok(timed) = timed_among(&found, &request, things, schedule) {
                     return Some(timed);
                 }
                 meeting = next;
@@ -96,7 +96,7 @@ fn around(
     None
 }
 
-/// The same way at other times, among `things` that move; the plan begins at `begins` s.
+/// The same way at other times, among `things` that move. Where one of them comes by its end, the formation arrives after that.
 ///
 /// # Errors
 /// It meets something wherever it waits.
@@ -104,20 +104,32 @@ pub fn timed_among(
     plan: &MotionPlan,
     request: &PlanRequest<'_>,
     things: &[MovingThing],
-    begins: f64,
+    schedule: Schedule,
 ) -> Result<MotionPlan, Unavoidable> {
-    let Some(meeting) = meeting_of(plan, request, things, begins) else { return Ok(plan.clone()) };
+    let Some(meeting) = meeting_of(plan, request, things, schedule) else { return Ok(plan.clone()) };
     let clearance = request.map.clearance();
-    let traffic = Traffic::new(plan, request.model, &request.limits, clearance, things, begins);
+    let traffic = Traffic::new(plan, request.model, &request.limits, clearance, things, schedule.begins);
+    // It may not arrive before all that comes by has gone, unless it leaves before.
+    let at_the_end = |stays: f64| traffic.meetings_at_the_end(plan.duration(), stays);
+    let comes_by = at_the_end(schedule.stays).next().and_then(|_| at_the_end(f64::INFINITY).last());
+    if comes_by.is_some_and(|last| last.time >= traffic.rests_at()) {
+        // What is there stays there.
+        return Err(Unavoidable(meeting));
+    }
+    let free = comes_by.map_or(0.0, |last| last.time + MOMENT);
     let mut points: Vec<PlanPoint> = vec![];
     let (mut time, mut stood) = (0.0, 0.0);
-    for range in between_stops(&plan.points) {
+    let ranges = between_stops(&plan.points);
+    let last = ranges.len().checked_sub(1).ok_or(Unavoidable(meeting))?;
+    for (number, range) in ranges.into_iter().enumerate() {
         let part = &plan.points[range];
         // Wheels turn where the lead stands.
         time += part[0].time - stood;
         stood = part[part.len() - 1].time;
         let lattice = SpeedLattice::new(part, request).ok_or(Unavoidable(meeting))?;
-        let stretches = lattice.search(part, &traffic, time).ok_or(Unavoidable(meeting))?;
+        let stretches = lattice
+            .search(part, &traffic, time, if number == last { free } else { 0.0 })
+            .ok_or(Unavoidable(meeting))?;
         time = stretches.last().map_or(time, |last| last.time + last.lasts);
         points.extend(at_the_times_of(part, &stretches));
     }
@@ -216,8 +228,14 @@ impl SpeedLattice {
         })
     }
 
-    /// The earliest arrival that meets nothing, from `begins` s of the plan on.
-    fn search(&self, part: &[PlanPoint], traffic: &Traffic<'_>, begins: f64) -> Option<Vec<TimedStretch>> {
+    /// The earliest arrival after `free` s that meets nothing, from `begins` s of the plan on.
+    fn search(
+        &self,
+        part: &[PlanPoint],
+        traffic: &Traffic<'_>,
+        begins: f64,
+        free: f64,
+    ) -> Option<Vec<TimedStretch>> {
         let from = part.first()?.way;
         let low = self.start_units as f64 * self.speed;
         let lead_in = TimedStretch {
@@ -252,7 +270,7 @@ impl SpeedLattice {
         queue.push((Reverse(key(self.left[0])), start));
         while let Some((_, state)) = queue.pop() {
             let (m, n, k) = state;
-            if n as usize == self.length && k == 0 {
+            if n as usize == self.length && k == 0 && begins + self.step * f64::from(m) >= free {
                 let mut states = vec![state];
                 while let Some((_, Some(before))) = known.get(&cell(states[states.len() - 1])) {
                     states.push(*before);

@@ -2,7 +2,7 @@
 
 use planning::{
     BodyShape, Convex, FormationModel, Map, Mission, MotionPlan, MovingThing, PlanError, PlanGoal,
-    PlanRequest, PlanStart, TrackPoint, TravelLimits, first_meeting, plan, plan_among, trial,
+    PlanRequest, PlanStart, Schedule, TrackPoint, TravelLimits, first_meeting, plan, plan_among, trial,
 };
 use std::f64::consts::PI;
 use vocabulary::Pose;
@@ -85,7 +85,7 @@ fn a_formation_lets_a_cart_cross() {
     for (starts, speed) in [(5.0, 0.6), (12.0, 0.4), (18.0, 1.5)] {
         let things = [cart([15.0, -12.0], [15.0, 14.0], starts, speed)];
         let met = first_meeting(&alone, &model, &limits, 0.25, &things, 0.0, 0.0);
-        let found = plan_among(&request, &things, 0.0, &mut |_| false).expect("a way");
+        let found = plan_among(&request, &things, Schedule::at(0.0), &mut |_| false).expect("a way");
         let near = least(&found, &model, &things, 0.0);
         assert!(near >= 0.25 - 1e-6, "{starts} {speed}: {near} m");
         check_motion(&found, &limits);
@@ -108,13 +108,14 @@ fn what_comes_along_a_corridor_is_waited_for_or_told() {
     let body = Convex::rectangle(Pose::default(), [0.6, 0.3]).expect("a box");
     let away = vec![point(0.0, 30.0, 0.0), point(30.0, 0.5, 0.0), point(40.0, 0.5, 12.0)];
     let thing = MovingThing::new(body.clone(), away).expect("a cart");
-    let found = plan_among(&request, std::slice::from_ref(&thing), 0.0, &mut |_| false).expect("a way");
+    let found =
+        plan_among(&request, std::slice::from_ref(&thing), Schedule::at(0.0), &mut |_| false).expect("a way");
     assert!(least(&found, &model, &[thing], 0.0) >= 0.25 - 1e-6);
     check_motion(&found, &limits);
     // It stops in the corridor.
     let stays = vec![point(0.0, 30.0, 0.0), point(12.0, 20.0, 0.0)];
     let thing = MovingThing::new(body, stays).expect("a cart");
-    match plan_among(&request, &[thing], 0.0, &mut |_| false) {
+    match plan_among(&request, &[thing], Schedule::at(0.0), &mut |_| false) {
         Err(PlanError::Meets(error)) => assert!(error.0.time > 5.0, "{error:?}"),
         Ok(found) => {
             // There is a way outside of the corridor.
@@ -140,10 +141,10 @@ fn two_formations_pass_each_other() {
     let back =
         Mission { start: PlanStart::at(Pose::new(15.0, -15.0, 0.5 * PI)), goal: PlanGoal::to([15.0, 15.0]) };
     let second = PlanRequest::new(&map, &model, limits, back);
-    let found = plan_among(&second, &things, 0.0, &mut |_| false).expect("a way");
+    let found = plan_among(&second, &things, Schedule::at(0.0), &mut |_| false).expect("a way");
     assert!(least(&found, &model, &things, 0.0) >= 0.25 - 1e-6);
     check_motion(&found, &limits);
-    let again = plan_among(&second, &things, 0.0, &mut |_| false).expect("a way");
+    let again = plan_among(&second, &things, Schedule::at(0.0), &mut |_| false).expect("a way");
     assert_eq!(found.digest(), again.digest());
 }
 
@@ -154,7 +155,7 @@ fn a_lead_that_drives_waits_in_time() {
     mission.start.speed = 0.71;
     let request = PlanRequest::new(&map, &model, limits, mission);
     let things = [cart([12.0, -14.0], [12.0, 14.0], 0.0, 0.8)];
-    let found = plan_among(&request, &things, 0.0, &mut |_| false).expect("a way");
+    let found = plan_among(&request, &things, Schedule::at(0.0), &mut |_| false).expect("a way");
     assert!((found.points[0].speed - 0.71).abs() < 1e-12);
     assert!(least(&found, &model, &things, 0.0) >= 0.25 - 1e-6);
     check_motion(&found, &limits);

@@ -68,6 +68,15 @@ fn nobody_is_held_up_by_a_filter() {
     }
 }
 
+/// The goal of the formation that yields is on the way of the other, which comes by after it would have arrived.
+#[test]
+fn who_yields_arrives_when_the_other_has_passed() {
+    let records = run("two-formations", &["groups.north.path.pose=[5,0,0]"]);
+    assert!(!records.iter().any(|record| record.contacts.iter().any(Contact::of_robot)));
+    let why = why_not("two-formations", &["groups.north.path.pose=[3,0,0]", "groups.north.pose=[3,0,0]"]);
+    assert!(why.contains("meets") && why.contains("cannot wait"), "{why}");
+}
+
 #[test]
 fn a_tour_stops_at_every_goal() {
     let records = run("warehouse-seven", &[]);

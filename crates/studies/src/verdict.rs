@@ -115,6 +115,9 @@ fn expectations(
     if expect.nobody_left_behind {
         findings.left_behind();
     }
+    if expect.arrived {
+        findings.arrived();
+    }
     if let Some(range) = expect.speed_within {
         findings.speeds(range, expect.settling_time);
     }
@@ -205,6 +208,32 @@ impl<'a> ExpectationJudge<'a> {
             None => ("nobody".to_owned(), true),
         };
         self.add("nobody_left_behind", "nobody".into(), found, met);
+    }
+
+    /// Every formation with a plan is at its end, and has not stopped on the way.
+    fn arrived(&mut self) {
+        let stops = |robot: &str| {
+            let own = self.metrics.events.iter().filter(|event| event.happened && event.robot == robot);
+            let kinds =
+                [EventKind::Halt, EventKind::GiveUp, EventKind::Reroute, EventKind::Arrive].map(Word::word);
+            let last = own.rfind(|event| kinds.contains(&event.kind));
+            last.is_some_and(|event| kinds[..2].contains(&event.kind))
+        };
+        let leads = self.metrics.robots.iter().filter(|robot| robot.plan.is_some_and(|plan| plan.leads));
+        let away = leads.clone().find_map(|robot| {
+            let left = robot.plan.map_or(0.0, |plan| plan.time_left);
+            match (stops(&robot.robot), left > 0.0) {
+                (true, _) => Some(format!("`{}` has stopped on its way", robot.robot)),
+                (false, true) => Some(format!("`{}` has {left:.1} s to go", robot.robot)),
+                _ => None,
+            }
+        });
+        let (found, met) = match away {
+            Some(away) => (away, false),
+            None if leads.count() == 0 => ("no robot has goals".to_owned(), false),
+            None => ("everybody".to_owned(), true),
+        };
+        self.add("arrived", "everybody".into(), found, met);
     }
 
     /// What is found where no edge is judged: fine where the scene has none, not where all have ended.

@@ -71,6 +71,8 @@ settings! {
         pub no_event_refused: bool = false, Flag;
         /// Whether no robot may be left waiting, or have given up, at the end of a run in which something happened.
         pub nobody_left_behind: bool = true, Flag;
+        /// Whether every lead robot with goals has to be at the last of them at the end.
+        pub arrived: bool = false, Flag;
         /// Largest height of any robot's ground point over the ground, m: jumps and climbs.
         pub lift_at_most: Option<f64> = None, Optional(LENGTH);
     }

@@ -25,7 +25,7 @@ use crate::error::BuildError;
 use formation::{EdgeLaw, Graph};
 use goal_formation::GoalFormation;
 use known_things::KnownThings;
-use navigator::{Departure, Navigator, Phase, PlanTask};
+use navigator::{Departure, GOALS_MOST, Navigator, Phase, PlanTask};
 use plan_names::PlanNames;
 use planning::{PlanGoal, PlanStart};
 use scene::{Path, Robot, Role, Scene, Vehicle};
@@ -110,6 +110,13 @@ pub(crate) fn goals(
     let mut moving = surroundings.moving(|index| surroundings.things[index].known);
     let mut navigators: Vec<Navigator> = vec![];
     for (lead, wish) in asked {
+        if wish.goals.len() > GOALS_MOST {
+            let goals = wish.goals.len();
+            let why = format!(
+                "{goals} goals over all rounds: at most {GOALS_MOST} are planned before a run begins"
+            );
+            return Err(BuildError::Plan { robot: robot_of(lead), why });
+        }
         let convoy = GoalFormation::of(graph, laws, lead, 0.0);
         let model = convoy.model(&vehicles).map_err(|error| invalid(lead, &error))?;
         let limits = convoy.limits(&vehicles, &wish.travel);
@@ -127,8 +134,8 @@ pub(crate) fn goals(
                 let moving: Vec<EntityId> = moving.iter().map(|(whose, _)| *whose).collect();
                 let names =
                     PlanNames { name: &name, robots: &convoy.robots, standing: &standing, moving: &moving };
-                let at = if wish.goals.len() > 1 { format!("to goal {}: ", goal + 1) } else { String::new() };
-                BuildError::Plan { robot: robot_of(lead), why: format!("{at}{}", names.why(&error)) }
+                let why = format!("{}{}", wish.name_of(goal), names.why(&error));
+                BuildError::Plan { robot: robot_of(lead), why }
             },
         )?;
         let navigator = Navigator {
@@ -186,9 +193,10 @@ fn wish(path: &Path) -> Option<GoalWish> {
         Path::Tour { goals, pause, rounds, travel } => (goals.as_slice(), *pause, *rounds, travel),
         _ => return None,
     };
+    let round = goals.len();
     let goals = (0..rounds)
         .flat_map(|_| goals)
         .map(|goal| PlanGoal { heading: goal.heading, ..PlanGoal::to(goal.position) })
         .collect();
-    Some(GoalWish { goals, pause, travel: *travel })
+    Some(GoalWish { goals, round, pause, travel: *travel })
 }

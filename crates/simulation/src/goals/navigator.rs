@@ -4,12 +4,15 @@ use super::goal_formation::shape;
 use super::known_things::map;
 use super::motion::{PlannedMotion, PlannedPart};
 use planning::{
-    Convex, FormationModel, InputError, Map, Mission, MovingThing, PlanError, PlanGoal, PlanRequest,
-    PlanStart, TrackPoint, TravelLimits, plan_among,
+    Convex, FormationModel, InputError, Map, Mission, MotionPlan, MovingThing, PlanError, PlanGoal,
+    PlanRequest, PlanStart, Schedule, TrackPoint, TravelLimits, plan_among,
 };
 use scene::{Travel, Vehicle};
 use std::sync::Arc;
 use vocabulary::{EntityId, Pose};
+
+/// Goals of one lead robot at most, over all rounds of a tour: every one of them is planned before the run begins.
+pub(super) const GOALS_MOST: usize = 200;
 
 /// A lead robot that has goals.
 #[derive(Debug, Clone)]
@@ -42,6 +45,8 @@ pub(crate) struct Navigator {
 pub struct GoalWish {
     /// All of its goals, those of a tour once a round.
     pub goals: Vec<PlanGoal>,
+    /// How many of them are a round.
+    pub round: usize,
     /// How long it stays at each, s.
     pub pause: f64,
     /// How it goes there.
@@ -140,8 +145,11 @@ impl GoalWish {
                 ..PlanRequest::new(&map, task.model, task.limits, mission)
             };
             request.effort.records = task.records;
+            let is_last = number + 1 == self.goals.len();
+            let schedule = Schedule { begins: time, stays: if is_last { f64::INFINITY } else { self.pause } };
             let plan =
-                plan_among(&request, &things, time, &mut |_| false).map_err(|error| (number, error))?;
+                plan_among(&request, &things, schedule, &mut |_| false).map_err(|error| (number, error))?;
+            let plan = self.in_shape(plan, &request, &things, schedule);
             if let Some(end) = plan.points.last() {
                 start = PlanStart { level: end.level, curvature: end.curvature, ..PlanStart::at(end.pose) };
             }
@@ -151,6 +159,31 @@ impl GoalWish {
             parts.push(PlannedPart { begins, goal: Some(number), until: f64::INFINITY, plan });
         }
         Ok(parts)
+    }
+
+    /// The plan that ends in the shape where the goal leaves that open and there is one.
+    fn in_shape(
+        &self,
+        plan: MotionPlan,
+        request: &PlanRequest<'_>,
+        things: &[MovingThing],
+        schedule: Schedule,
+    ) -> MotionPlan {
+        let goal = request.mission.goal;
+        if goal.level.is_some() || plan.points.last().is_none_or(|end| end.level == 0.0) {
+            return plan;
+        }
+        let mission = Mission { goal: goal.at_level(0), ..request.mission };
+        plan_among(&PlanRequest { mission, ..*request }, things, schedule, &mut |_| false).unwrap_or(plan)
+    }
+
+    /// What error messages call goal number `goal`.
+    pub(super) fn name_of(&self, goal: usize) -> String {
+        match (self.goals.len(), self.round) {
+            (1, _) => String::new(),
+            (goals, round) if goals == round => format!("to goal {}: ", goal + 1),
+            (_, round) => format!("to goal {} in round {}: ", goal % round + 1, goal / round + 1),
+        }
     }
 
     /// How far robots stay off things, m.
