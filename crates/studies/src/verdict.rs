@@ -213,10 +213,10 @@ impl<'a> ExpectationJudge<'a> {
     /// Every formation with a plan is at its end, and has not stopped on the way.
     fn arrived(&mut self) {
         let stops = |robot: &str| {
-            let own = self.metrics.events.iter().filter(|event| event.happened && event.robot == robot);
             let kinds =
                 [EventKind::Halt, EventKind::GiveUp, EventKind::Reroute, EventKind::Arrive].map(Word::word);
-            let last = own.rfind(|event| kinds.contains(&event.kind));
+            let own = |event: &&EventSummary| event.happened && event.robot == robot;
+            let last = self.metrics.events.iter().filter(own).rfind(|event| kinds.contains(&event.kind));
             last.is_some_and(|event| kinds[..2].contains(&event.kind))
         };
         let leads = self.metrics.robots.iter().filter(|robot| robot.plan.is_some_and(|plan| plan.leads));
