@@ -149,7 +149,7 @@ impl GoalWish {
             let schedule = Schedule { begins: time, stays: if is_last { f64::INFINITY } else { self.pause } };
             let plan =
                 plan_among(&request, &things, schedule, &mut |_| false).map_err(|error| (number, error))?;
-            let plan = self.in_shape(plan, &request, &things, schedule);
+            let plan = in_shape(plan, &request, &things, schedule);
             if let Some(end) = plan.points.last() {
                 start = PlanStart { level: end.level, curvature: end.curvature, ..PlanStart::at(end.pose) };
             }
@@ -159,22 +159,6 @@ impl GoalWish {
             parts.push(PlannedPart { begins, goal: Some(number), until: f64::INFINITY, plan });
         }
         Ok(parts)
-    }
-
-    /// The plan that ends in the shape where the goal leaves that open and there is one.
-    fn in_shape(
-        &self,
-        plan: MotionPlan,
-        request: &PlanRequest<'_>,
-        things: &[MovingThing],
-        schedule: Schedule,
-    ) -> MotionPlan {
-        let goal = request.mission.goal;
-        if goal.level.is_some() || plan.points.last().is_none_or(|end| end.level == 0.0) {
-            return plan;
-        }
-        let mission = Mission { goal: goal.at_level(0), ..request.mission };
-        plan_among(&PlanRequest { mission, ..*request }, things, schedule, &mut |_| false).unwrap_or(plan)
     }
 
     /// What error messages call goal number `goal`.
@@ -197,6 +181,21 @@ impl GoalWish {
         let places = [[start.x, start.y]].into_iter().chain(self.goals.iter().map(|goal| goal.position));
         map(task.standing, places, task.model, clearance)
     }
+}
+
+/// The plan that ends in the shape where the goal leaves that open and there is one.
+fn in_shape(
+    plan: MotionPlan,
+    request: &PlanRequest<'_>,
+    things: &[MovingThing],
+    schedule: Schedule,
+) -> MotionPlan {
+    let goal = request.mission.goal;
+    if goal.level.is_some() || plan.points.last().is_none_or(|end| end.level == 0.0) {
+        return plan;
+    }
+    let mission = Mission { goal: goal.at_level(0), ..request.mission };
+    plan_among(&PlanRequest { mission, ..*request }, things, schedule, &mut |_| false).unwrap_or(plan)
 }
 
 impl Navigator {
