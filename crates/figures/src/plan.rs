@@ -241,7 +241,8 @@ impl Plan {
             );
         }
         for dots in &self.dots {
-            let d: String = on_paper(&dots.points).iter().map(|p| format!("M{}h0", point(*p))).collect();
+            let places: Vec<String> = on_paper(&dots.points).into_iter().map(point).collect();
+            let d = format!("M{}h0", places.join("h0M"));
             let colour = ink(dots.colour);
             svg.path(
                 &d,
