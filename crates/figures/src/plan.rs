@@ -242,6 +242,9 @@ impl Plan {
         }
         for dots in &self.dots {
             let places: Vec<String> = on_paper(&dots.points).into_iter().map(point).collect();
+            if places.is_empty() {
+                continue;
+            }
             let d = format!("M{}h0", places.join("h0M"));
             let colour = ink(dots.colour);
             svg.path(
