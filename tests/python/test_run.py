@@ -150,3 +150,15 @@ def test_what_does_not_pickle_says_what_does(run):
         for send in (pickle.dumps, copy.deepcopy):
             with pytest.raises(TypeError, match=f"a {type(thing).__name__} cannot be pickled.*{instead}"):
                 send(thing)
+
+
+def test_arrival_is_expected_of_who_has_goals():
+    def found(scene):
+        return {expectation.key: expectation for expectation in scene.run().expectations}["arrived"]
+
+    maze = Scene.load("maze-three")
+    assert found(maze).met and found(maze).found == "everybody"
+    late = found(maze.set({"time.duration": 20}))
+    assert not late.met and late.found == "`robot-1` has 29.5 s to go"
+    nobody = found(Scene.load("line-three").set({"expect.arrived": True}))
+    assert not nobody.met and nobody.found == "no robot has goals"
