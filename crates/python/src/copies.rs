@@ -398,8 +398,9 @@ impl PyCopies {
         pixels(py, &picture)
     }
 
-    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
-        Err(not_pickled(slf.as_any(), "make the environment in the process that uses it"))
+    #[expect(clippy::unused_self, reason = "pickle asks an object")]
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(not_pickled("an environment", "make the environment in the process that uses it"))
     }
 
     /// Of the trajectory of every copy, as far as its agents have decided; an empty text before its first episode.

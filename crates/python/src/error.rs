@@ -89,15 +89,10 @@ pub(crate) fn busy() -> PyErr {
     )
 }
 
-/// What is of this process and cannot be sent to another one: `instead` says what can.
-pub(crate) fn not_pickled(object: &Bound<'_, PyAny>, instead: &str) -> PyErr {
-    let kind = object.get_type();
-    let kind = kind.name().map(|name| name.to_string()).unwrap_or_default();
-    // What environments are made of is not what their user has made.
-    let kind = if kind == "Copies" { "environment" } else { &kind };
-    let article = if kind.starts_with('e') { "an" } else { "a" };
+/// `what` is of this process and cannot be sent to another one: `instead` says what can.
+pub(crate) fn not_pickled(what: &str, instead: &str) -> PyErr {
     PyTypeError::new_err(format!(
-        "{article} {kind} cannot be pickled, and so not be sent to another process: {instead}"
+        "{what} cannot be pickled, and so not be sent to another process: {instead}"
     ))
 }
 

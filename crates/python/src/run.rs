@@ -244,9 +244,10 @@ impl PyRun {
         written.map_err(|error| of_recording(&error))
     }
 
-    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
+    #[expect(clippy::unused_self, reason = "pickle asks an object")]
+    fn __reduce__(&self) -> PyResult<()> {
         Err(not_pickled(
-            slf.as_any(),
+            "a Run",
             "`save` it and send the folder, or send what is needed of it, such as `run.metrics` or `run.digest`",
         ))
     }

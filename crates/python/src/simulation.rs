@@ -389,9 +389,10 @@ impl PySimulation {
         matrix(py, numbers, edge_columns().len())
     }
 
-    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
+    #[expect(clippy::unused_self, reason = "pickle asks an object")]
+    fn __reduce__(&self) -> PyResult<()> {
         Err(not_pickled(
-            slf.as_any(),
+            "a Simulation",
             "send its `scene`, which has what was applied on the way, and begin there with `scene.simulation()`; `fork` copies \
              it in this process",
         ))

@@ -109,8 +109,9 @@ impl PyTable {
         })
     }
 
-    fn __reduce__(slf: &Bound<'_, Self>) -> PyResult<()> {
-        Err(not_pickled(slf.as_any(), "send `pyarrow.table(table)` or another library's table of it"))
+    #[expect(clippy::unused_self, reason = "pickle asks an object")]
+    fn __reduce__(&self) -> PyResult<()> {
+        Err(not_pickled("a Table", "send `pyarrow.table(table)` or another library's table of it"))
     }
 
     /// Number of rows.
