@@ -32,7 +32,7 @@ fn dependencies(all_kinds: bool) -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Whom each crate may use among our own; everybody else may not.
-const ARROWS: [(&str, &[&str]); 23] = [
+const ARROWS: [(&str, &[&str]); 24] = [
     ("vocabulary", &[]),
     ("output", &[]),
     ("film", &["vocabulary", "output"]),
@@ -67,6 +67,20 @@ const ARROWS: [(&str, &[&str]); 23] = [
             "recording",
         ],
     ),
+    (
+        "sweeps",
+        &[
+            "vocabulary",
+            "output",
+            "metrics",
+            "laws",
+            "scene",
+            "simulation",
+            "studies",
+            "recording",
+            "figures",
+        ],
+    ),
     ("footage", &["vocabulary", "output", "scene", "studies", "metrics", "recording", "film", "rendering"]),
     ("report", &["vocabulary", "scene", "simulation", "studies", "metrics", "figures"]),
     (
@@ -94,6 +108,7 @@ const ARROWS: [(&str, &[&str]); 23] = [
             "laws",
             "scene",
             "studies",
+            "sweeps",
             "metrics",
             "recording",
             "film",

@@ -92,6 +92,16 @@ impl From<studies::Error> for Failure {
     }
 }
 
+impl From<sweeps::Error> for Failure {
+    fn from(error: sweeps::Error) -> Self {
+        match error {
+            sweeps::Error::Output(error) => error.into(),
+            sweeps::Error::Recording(error) => error.into(),
+            other => Self::Usage(other.to_string()),
+        }
+    }
+}
+
 impl From<rendering::Error> for Failure {
     fn from(error: rendering::Error) -> Self {
         footage::Error::from(error).into()

@@ -33,6 +33,7 @@ mod run;
 mod scenes;
 mod stills;
 mod summary;
+mod sweep;
 mod terminal;
 mod tune;
 mod welcome;
@@ -77,6 +78,7 @@ pub fn program(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Some(Subcommands::Capture(args)) => capture::capture(&args),
         Some(Subcommands::Film(args)) => film::film(&args),
         Some(Subcommands::Plan(args)) => plan::plan(&args),
+        Some(Subcommands::Sweep(args)) => sweep::sweep(&args),
         Some(Subcommands::Tune(args)) => tune::tune(&args),
         Some(Subcommands::Budget(args)) => budget::budget(&args),
         Some(Subcommands::Stills(args)) => stills::stills(&args),

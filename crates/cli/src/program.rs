@@ -2,7 +2,7 @@
 
 use crate::{
     accuracy, budget, capture, certify, check, compare, dataset, diff, doctor, figures, film, lab, laws,
-    link, manuals, plan, replay, run, scenes, stills, tune,
+    link, manuals, plan, replay, run, scenes, stills, sweep, tune,
 };
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
@@ -40,6 +40,8 @@ pub(crate) enum Subcommands {
     Compare(compare::CompareArgs),
     /// Plan the ways of lead robots to their goals without a run, and show them
     Plan(plan::PlanArgs),
+    /// Make many runs of a scene that differ, and tell for which values and seeds they meet its expectations
+    Sweep(Box<sweep::SweepArgs>),
     /// Search for gains that fit a scene's vehicles, and print them
     Tune(tune::TuneArgs),
     /// Compute an error budget: run the scene with better and worse sensing, side by side

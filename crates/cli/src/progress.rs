@@ -34,6 +34,13 @@ impl Progress {
         Self::Bar(bar)
     }
 
+    /// What the job is, where that has changed.
+    pub(crate) fn says(&self, what: &str) {
+        if let Self::Bar(bar) = self {
+            bar.set_message(harmless(what).into_owned());
+        }
+    }
+
     /// Where the job is.
     pub(crate) fn at(&self, step: u64) {
         match self {

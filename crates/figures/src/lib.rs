@@ -9,11 +9,13 @@
 
 mod axis;
 mod draw;
+mod map;
 mod place;
 mod plan;
 mod svg;
 mod trim;
 
+pub use map::{Map, MapAxis, MapLine};
 pub use plan::{Arrow, Note, Plan, PlanDots, PlanNode, PlanOutline, PlanPath, PlanStrip, Side};
 pub use svg::Rgb;
 

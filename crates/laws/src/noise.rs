@@ -26,8 +26,8 @@ impl Noise {
         ((self.bits(index) >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
-    /// 64 random bits.
-    fn bits(&self, index: u64) -> u64 {
+    /// Number `index` of this robot and sample: 64 random bits.
+    pub fn bits(&self, index: u64) -> u64 {
         [self.robot, self.sample, index]
             .into_iter()
             .fold(scrambled(self.seed), |key, word| scrambled(key ^ word))

@@ -51,6 +51,14 @@ impl Claim {
         Ok(claim)
     }
 
+    /// Claims a folder that holds what is to be gone on with.
+    ///
+    /// # Errors
+    /// [`Error::Busy`] where another program has claimed it, [`Error::Io`] where it cannot be written.
+    pub fn again(folder: &Path) -> Result<Self, Error> {
+        Self::lock(folder)
+    }
+
     fn lock(folder: &Path) -> Result<Self, Error> {
         let path = folder.join(LOCK);
         loop {

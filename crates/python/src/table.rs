@@ -4,13 +4,15 @@ use crate::error::not_pickled;
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::types::Float64Type;
-use arrow_array::{ArrayRef, BooleanArray, Float64Array, RecordBatch, RecordBatchIterator, StringArray};
+use arrow_array::{
+    ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, RecordBatchIterator, StringArray,
+};
 use arrow_schema::{ArrowError, DataType, Field, Schema};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyList};
-use recording::Column;
+use recording::{Column, NamedColumn};
 use std::ffi::CStr;
 use std::sync::Arc;
 
@@ -41,11 +43,12 @@ impl PyTable {
 ///
 /// # Errors
 /// [`ArrowError`] where the columns differ in length.
-pub(crate) fn batch(columns: Vec<(&'static str, Column)>) -> Result<RecordBatch, ArrowError> {
-    let array = |(name, column)| {
+pub(crate) fn batch(columns: Vec<NamedColumn>) -> Result<RecordBatch, ArrowError> {
+    let array = |NamedColumn { name, column }| {
         let array: ArrayRef = match column {
             Column::Text(texts) => Arc::new(StringArray::from(texts)),
             Column::Number(numbers) => Arc::new(Float64Array::from(numbers)),
+            Column::Whole(numbers) => Arc::new(Int64Array::from(numbers)),
             Column::Flag(flags) => Arc::new(BooleanArray::from(flags)),
         };
         (Field::new(name, array.data_type().clone(), false), array)

@@ -1,6 +1,6 @@
 //! What the tables of a run have in their columns: a function for every kind of row.
 
-use crate::{Column, TableKind};
+use crate::{Column, NamedColumn, TableKind};
 use vocabulary::{
     Constraint, Contact, EdgeState, EntityId, EventRecord, FleetInfo, LawQuantity, MeasurementRecord,
     Placement, PlannedPath, PlannedPoint, Pose, RobotState, SafetyState, Word,
@@ -18,11 +18,8 @@ use Cell::{Flag, Number, Text};
 /// Takes the values of a row one after the other, each with the name of its column, which ends in its unit.
 pub(crate) type Row<'a> = dyn FnMut(&'static str, Cell<'_>) + 'a;
 
-/// A column and its name.
-pub(crate) type Named = (&'static str, Column);
-
 /// The columns of a table, empty, and their names.
-pub(crate) fn empty(kind: TableKind) -> Vec<Named> {
+pub(crate) fn empty(kind: TableKind) -> Vec<NamedColumn> {
     let mut columns = vec![];
     let mut add = |name, cell: Cell<'_>| {
         let column = match cell {
@@ -30,7 +27,7 @@ pub(crate) fn empty(kind: TableKind) -> Vec<Named> {
             Number(_) => Column::Number(vec![]),
             Flag(_) => Column::Flag(vec![]),
         };
-        columns.push((name, column));
+        columns.push(NamedColumn::new(name, column));
     };
     match kind {
         TableKind::Robots => robot(0.0, "", &RobotState::default(), &mut add),
@@ -212,7 +209,8 @@ mod tests {
             let start = text.find(&format!("**`{name}`**")).expect("a paragraph");
             let paragraph = text[start..].split("\n\n").next().expect("an end");
             let named: Vec<&str> = paragraph.split('`').skip(3).step_by(2).collect();
-            let columns: Vec<&str> = empty(*kind).into_iter().map(|(column, _)| column).collect();
+            let empty = empty(*kind);
+            let columns: Vec<&str> = empty.iter().map(|column| &*column.name).collect();
             assert_eq!(named, columns, "{name}");
         }
     }

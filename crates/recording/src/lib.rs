@@ -11,6 +11,7 @@
 //! Rows reach the disk as the run goes, in parts that are each complete, so a run that is cut short leaves what it
 //! had; its manifest then says `running` or `interrupted`, never `complete`.
 
+mod column;
 mod columns;
 mod error;
 pub mod log;
@@ -20,8 +21,10 @@ mod parquet_file;
 mod run;
 mod table;
 
+pub use column::{Column, NamedColumn};
 pub use error::Error;
 pub use manifest::{Manifest, Status};
 pub use numbers::{edge_columns, edge_numbers, robot_columns, robot_numbers};
+pub use parquet_file::{ParquetWriter, append_columns, read_mark, read_whole};
 pub use run::{Finished, Recorder, RunOptions, metrics_text};
-pub use table::{Column, TableBuilder, TableKind, read_table};
+pub use table::{TableBuilder, TableKind, read_table};

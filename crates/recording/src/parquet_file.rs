@@ -1,12 +1,13 @@
 //! Parquet files of the columns that tables have: text, numbers and flags, none of them ever absent.
 
-use crate::table::Column;
-use crate::{Error, columns::Named};
+use crate::Error;
+use crate::column::{Column, NamedColumn};
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::column::reader::ColumnReader;
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::ByteArray;
 use parquet::errors::{ParquetError, Result};
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
@@ -15,8 +16,11 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+/// Under which key a file carries its mark.
+const MARK: &str = "echelon";
+
 /// A Parquet file while it is written: under a draft's name, until it is whole.
-pub(crate) struct ParquetWriter {
+pub struct ParquetWriter {
     draft: PathBuf,
     path: PathBuf,
     file: SerializedFileWriter<File>,
@@ -24,11 +28,32 @@ pub(crate) struct ParquetWriter {
 
 impl ParquetWriter {
     /// Begins the file at `path`, which appears when it is closed. It has the columns of `columns`.
-    pub(crate) fn create(path: &Path, columns: &[Named]) -> std::result::Result<Self, Error> {
+    ///
+    /// # Errors
+    /// [`Error`] where it cannot be written.
+    pub fn create(path: &Path, columns: &[NamedColumn]) -> std::result::Result<Self, Error> {
+        Self::with(path, columns, None)
+    }
+
+    /// As [`ParquetWriter::create`]; the file carries a mark, which [`read_mark`] finds.
+    ///
+    /// # Errors
+    /// [`Error`] where it cannot be written.
+    pub fn marked(path: &Path, columns: &[NamedColumn], mark: &str) -> std::result::Result<Self, Error> {
+        Self::with(path, columns, Some(vec![KeyValue::new(MARK.to_owned(), mark.to_owned())]))
+    }
+
+    fn with(
+        path: &Path,
+        columns: &[NamedColumn],
+        metadata: Option<Vec<KeyValue>>,
+    ) -> std::result::Result<Self, Error> {
         let draft = path.with_extension("tmp");
         let file = File::create(&draft).map_err(Error::io("create", &draft))?;
-        let properties =
-            WriterProperties::builder().set_compression(Compression::ZSTD(ZstdLevel::default())).build();
+        let properties = WriterProperties::builder()
+            .set_compression(Compression::ZSTD(ZstdLevel::default()))
+            .set_key_value_metadata(metadata)
+            .build();
         let file = schema(columns)
             .and_then(|schema| SerializedFileWriter::new(file, schema, Arc::new(properties)))
             .map_err(Error::table(&draft))?;
@@ -36,12 +61,18 @@ impl ParquetWriter {
     }
 
     /// Writes rows as a group, and takes them out of `columns`.
-    pub(crate) fn write(&mut self, columns: &mut [Named]) -> std::result::Result<(), Error> {
+    ///
+    /// # Errors
+    /// [`Error`] where the disk does not take them.
+    pub fn write(&mut self, columns: &mut [NamedColumn]) -> std::result::Result<(), Error> {
         write_group(&mut self.file, columns).map_err(Error::table(&self.path))
     }
 
     /// Completes the file and gives it its name.
-    pub(crate) fn close(mut self) -> std::result::Result<(), Error> {
+    ///
+    /// # Errors
+    /// [`Error`] where the disk does not take it.
+    pub fn close(mut self) -> std::result::Result<(), Error> {
         self.file.finish().map_err(Error::table(&self.path))?;
         fs::rename(&self.draft, &self.path).map_err(Error::io("write", &self.path))
     }
@@ -55,14 +86,17 @@ impl Drop for ParquetWriter {
 }
 
 /// Appends the rows of the file at `path` to `columns`, each found by its name.
-pub(crate) fn read(path: &Path, columns: &mut [Named]) -> std::result::Result<(), Error> {
+///
+/// # Errors
+/// [`Error`] where it cannot be read, or lacks a column.
+pub fn append_columns(path: &Path, columns: &mut [NamedColumn]) -> std::result::Result<(), Error> {
     let file = File::open(path).map_err(Error::io("open", path))?;
     let reader = SerializedFileReader::new(file).map_err(Error::table(path))?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(Error::table(path))?;
-        for (name, column) in &mut *columns {
-            let index = schema.columns().iter().position(|described| described.name() == *name);
+        for NamedColumn { name, column } in &mut *columns {
+            let index = schema.columns().iter().position(|described| described.name() == &**name);
             let read = index.map_or(Ok(false), |index| read_column(&*group, index, column));
             if !read.map_err(Error::table(path))? {
                 let message = format!("column `{name}` is missing or of another type");
@@ -73,11 +107,34 @@ pub(crate) fn read(path: &Path, columns: &mut [Named]) -> std::result::Result<()
     Ok(())
 }
 
-fn schema(columns: &[Named]) -> Result<Arc<Type>> {
-    let field = |(name, column): &Named| {
+/// The mark that the file at `path` carries; `None` where it has none.
+///
+/// # Errors
+/// [`Error`] where it cannot be read.
+pub fn read_mark(path: &Path) -> std::result::Result<Option<String>, Error> {
+    let file = File::open(path).map_err(Error::io("open", path))?;
+    let reader = SerializedFileReader::new(file).map_err(Error::table(path))?;
+    let pairs = reader.metadata().file_metadata().key_value_metadata();
+    Ok(pairs.and_then(|pairs| pairs.iter().find(|pair| pair.key == MARK)?.value.clone()))
+}
+
+/// Whole numbers of the file at `path`, by the name of their column.
+///
+/// # Errors
+/// [`Error`] where it cannot be read, or has no such column.
+pub fn read_whole(path: &Path, name: &'static str) -> std::result::Result<Vec<i64>, Error> {
+    let mut columns = [NamedColumn::new(name, Column::Whole(vec![]))];
+    append_columns(path, &mut columns)?;
+    let [NamedColumn { column, .. }] = columns;
+    Ok(if let Column::Whole(numbers) = column { numbers } else { vec![] })
+}
+
+fn schema(columns: &[NamedColumn]) -> Result<Arc<Type>> {
+    let field = |NamedColumn { name, column }: &NamedColumn| {
         let (physical, logical) = match column {
             Column::Text(_) => (Physical::BYTE_ARRAY, Some(LogicalType::String)),
             Column::Number(_) => (Physical::DOUBLE, None),
+            Column::Whole(_) => (Physical::INT64, None),
             Column::Flag(_) => (Physical::BOOLEAN, None),
         };
         Type::primitive_type_builder(name, physical)
@@ -90,10 +147,10 @@ fn schema(columns: &[Named]) -> Result<Arc<Type>> {
     Type::group_type_builder("table").with_fields(fields).build().map(Arc::new)
 }
 
-fn write_group(file: &mut SerializedFileWriter<File>, columns: &mut [Named]) -> Result<()> {
+fn write_group(file: &mut SerializedFileWriter<File>, columns: &mut [NamedColumn]) -> Result<()> {
     let mut group = file.next_row_group()?;
-    for (_, column) in columns {
-        write_column(&mut group, column)?;
+    for named in columns {
+        write_column(&mut group, &mut named.column)?;
     }
     group.close().map(drop)
 }
@@ -109,6 +166,9 @@ fn write_column(group: &mut SerializedRowGroupWriter<'_, File>, column: &mut Col
             writer.write_batch(&bytes, None, None)?;
         }
         (ColumnWriter::DoubleColumnWriter(writer), Column::Number(numbers)) => {
+            writer.write_batch(&std::mem::take(numbers), None, None)?;
+        }
+        (ColumnWriter::Int64ColumnWriter(writer), Column::Whole(numbers)) => {
             writer.write_batch(&std::mem::take(numbers), None, None)?;
         }
         (ColumnWriter::BoolColumnWriter(writer), Column::Flag(flags)) => {
@@ -132,6 +192,9 @@ fn read_column(group: &dyn RowGroupReader, index: usize, column: &mut Column) ->
             bytes.len()
         }
         (ColumnReader::DoubleColumnReader(mut reader), Column::Number(numbers)) => {
+            reader.read_records(rows, None, None, numbers)?.1
+        }
+        (ColumnReader::Int64ColumnReader(mut reader), Column::Whole(numbers)) => {
             reader.read_records(rows, None, None, numbers)?.1
         }
         (ColumnReader::BoolColumnReader(mut reader), Column::Flag(flags)) => {

@@ -218,7 +218,8 @@ fn json_text<T: Serialize>(value: &T) -> serde_json::Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::{Column, read_table};
+    use crate::Column;
+    use crate::table::read_table;
     use vocabulary::{Body, Edge, EdgeState, RobotInfo, RobotState, Snapshot};
 
     fn fleet() -> FleetInfo {

@@ -4,7 +4,8 @@
 //! full, and the parts become one file when the run ends.
 
 use crate::Error;
-use crate::columns::{self, Cell, Named, Row};
+use crate::column::{Column, NamedColumn};
+use crate::columns::{self, Cell, Row};
 use crate::parquet_file::{self, ParquetWriter};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -32,17 +33,6 @@ words! {
         /// Ways to goals, when they are planned.
         Plans = "plans",
     }
-}
-
-/// Values of one column.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Column {
-    /// Names.
-    Text(Vec<String>),
-    /// SI numbers.
-    Number(Vec<f64>),
-    /// Yes or no.
-    Flag(Vec<bool>),
 }
 
 /// Samples a part holds: at 10 ms, half a run of the paper.
@@ -128,7 +118,7 @@ impl TableKind {
 /// Gathers the rows of one table in memory.
 pub struct TableBuilder {
     kind: TableKind,
-    columns: Vec<Named>,
+    columns: Vec<NamedColumn>,
 }
 
 impl TableBuilder {
@@ -141,7 +131,7 @@ impl TableBuilder {
     pub fn push(&mut self, fleet: &FleetInfo, record: &StepRecord) {
         let (columns, mut next) = (&mut self.columns, 0);
         self.kind.rows(fleet, record, &mut |_, cell| {
-            match (&mut columns[next].1, cell) {
+            match (&mut columns[next].column, cell) {
                 (Column::Text(values), Cell::Text(text)) => values.push(text.to_owned()),
                 (Column::Number(values), Cell::Number(number)) => values.push(number),
                 (Column::Flag(values), Cell::Flag(flag)) => values.push(flag),
@@ -152,18 +142,18 @@ impl TableBuilder {
     }
 
     /// Takes the rows out, column by column, each with its name; the table is empty then.
-    pub fn take(&mut self) -> Vec<(&'static str, Column)> {
+    pub fn take(&mut self) -> Vec<NamedColumn> {
         std::mem::replace(&mut self.columns, columns::empty(self.kind))
     }
 
     /// Rows so far.
     fn len(&self) -> usize {
-        self.columns.first().map_or(0, |(_, column)| column.len())
+        self.columns.first().map_or(0, |first| first.column.len())
     }
 
     /// The rows as text, cell by cell.
     fn texts(&self) -> impl Iterator<Item = impl Iterator<Item = String>> {
-        (0..self.len()).map(|row| self.columns.iter().map(move |(_, column)| column.text(row)))
+        (0..self.len()).map(|row| self.columns.iter().map(move |each| each.column.text(row)))
     }
 }
 
@@ -191,7 +181,7 @@ impl TableWriter {
         if csv {
             let path = writer.path("csv");
             let mut file = csv::Writer::from_path(&path).map_err(Error::table(&path))?;
-            file.write_record(writer.table.columns.iter().map(|(name, _)| name))
+            file.write_record(writer.table.columns.iter().map(|each| &*each.name))
                 .map_err(Error::table(&path))?;
             writer.csv = Some(file);
         }
@@ -244,7 +234,7 @@ impl TableWriter {
         self.flush()?;
         let mut whole = ParquetWriter::create(&self.path("parquet"), &self.table.columns)?;
         for index in 0..self.parts {
-            parquet_file::read(&self.part(index), &mut self.table.columns)?;
+            parquet_file::append_columns(&self.part(index), &mut self.table.columns)?;
             if self.table.len() >= ROWS_PER_GROUP {
                 whole.write(&mut self.table.columns)?;
             }
@@ -252,24 +242,6 @@ impl TableWriter {
         whole.write(&mut self.table.columns)?;
         whole.close()?;
         fs::remove_dir_all(self.parts_folder()).map_err(Error::io("remove", &self.parts_folder()))
-    }
-}
-
-impl Column {
-    fn len(&self) -> usize {
-        match self {
-            Self::Text(v) => v.len(),
-            Self::Number(v) => v.len(),
-            Self::Flag(v) => v.len(),
-        }
-    }
-
-    fn text(&self, row: usize) -> String {
-        match self {
-            Self::Text(v) => v[row].clone(),
-            Self::Number(v) => v[row].to_string(),
-            Self::Flag(v) => v[row].to_string(),
-        }
     }
 }
 
@@ -285,9 +257,9 @@ pub fn read_table(folder: &Path, kind: TableKind) -> Result<Vec<Column>, Error> 
         if whole.exists() { vec![whole] } else { parts(&tables.join(kind.word()).with_extension("parts"))? };
     let mut columns = columns::empty(kind);
     for path in files {
-        parquet_file::read(&path, &mut columns)?;
+        parquet_file::append_columns(&path, &mut columns)?;
     }
-    Ok(columns.into_iter().map(|(_, column)| column).collect())
+    Ok(columns.into_iter().map(|each| each.column).collect())
 }
 
 fn parts(folder: &Path) -> Result<Vec<PathBuf>, Error> {

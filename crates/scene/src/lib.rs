@@ -40,6 +40,7 @@ mod shape;
 mod shipped;
 mod sight;
 mod start;
+mod study;
 mod table_file;
 mod text;
 mod types;
@@ -53,6 +54,10 @@ pub use link::{Link, LinkError, LinkOrigin, LinkProof, LinkedScene, TimedOverrid
 pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, scene_name, shipped};
+pub use study::{
+    Distribution, MOST_RUNS, Parameter, Sampling, Scatter, Study, StudyFault, ValueScale, Values,
+    ValuesError, value_text,
+};
 pub use text::node::composed;
 pub use types::{
     Change, Compensation, Environment, Event, Expect, Failure, Film, Follow, Goal, Ground, HandOver,

@@ -1,0 +1,369 @@
+//! `echelon sweep`: many runs of a scene, their table, figures and report.
+
+mod folder;
+mod joined;
+mod tell;
+
+use crate::args::AdapterArgs;
+use crate::failure::Failure;
+use crate::load::stem;
+use crate::print::note;
+use crate::progress::Progress;
+use crate::{Outcome, interrupt};
+use clap::{Args, Subcommand};
+use scene::{Override, Parameter, Sampling, Scatter, Study, StudyFault};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use sweeps::{Experiment, Progressed, Row, RowTable, StudyFolder, THREAD, run_all};
+use vocabulary::{Word, counted};
+
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(crate) struct SweepArgs {
+    #[command(subcommand)]
+    command: Option<SweepCommands>,
+    #[command(flatten)]
+    study: StudyArgs,
+}
+
+#[derive(Debug, Subcommand)]
+enum SweepCommands {
+    /// Put the shards of a study together
+    Merge(joined::MergeArgs),
+    /// Print the table of a study that was run before, and draw its figures anew
+    Show(joined::ShowArgs),
+}
+
+#[derive(Debug, Args)]
+struct StudyArgs {
+    /// Study file, scene file, or the name of a shipped scene
+    #[arg(value_name = "STUDY|SCENE", required = true)]
+    subject: Option<PathBuf>,
+    /// Vary a key: a range with its number of values, such as law.k=1..10/19 or observer.epsilon=log:0.001..0.1/13; a list,
+    /// a=1,2,5 or a=zip:1,2,5; a distribution, a=uniform:0..1, a=log-uniform:0.001..0.1 or a=normal:MEAN,DEVIATION; or a==KEY
+    /// for what another key is. May be repeated: there is a run for every combination
+    #[arg(long, value_name = "KEY=VALUES", value_parser = varied)]
+    vary: Vec<Parameter>,
+    /// Override a value of all runs, such as time.duration=5; may be repeated
+    #[arg(long, value_name = "KEY=VALUE")]
+    set: Vec<Override>,
+    /// Runs of every combination, each with a seed of its own
+    #[arg(long, value_name = "N")]
+    seeds: Option<u64>,
+    /// How often numbers with a distribution are drawn for every combination of the others
+    #[arg(long, value_name = "N")]
+    samples: Option<u64>,
+    /// How they are drawn: independent, latin-hypercube, sobol
+    #[arg(long, value_parser = sampling)]
+    sampling: Option<Sampling>,
+    /// Seed of everything that differs from run to run
+    #[arg(long, value_parser = crate::args::seed, allow_negative_numbers = true)]
+    seed: Option<u64>,
+    /// Start every follower within so many metres of where the scene puts it, with a heading that is off by so much: 0.5 or
+    /// "0.5,20 deg"
+    #[arg(long, value_name = "M[,ANGLE]", value_parser = scatter)]
+    scatter: Option<Scatter>,
+    /// Give up a run that takes longer, s; its row says so
+    #[arg(long, value_name = "S", value_parser = crate::args::within(0.001..=1e9, "write seconds, such as 10"))]
+    limit: Option<f64>,
+    /// Make one of N parts of the study, such as 3/16
+    #[arg(long, value_name = "I/N", value_parser = shard, conflicts_with = "range")]
+    shard: Option<[u64; 2]>,
+    /// Make the runs from A on and before B, such as 0..500; with an --out that ends in .parquet, into that file alone
+    #[arg(long, value_name = "A..B", value_parser = range)]
+    range: Option<Range<u64>>,
+    /// Threads; by default one for each core
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Folder of the study; by default sweeps/NAME. One that holds a part of it is gone on with
+    #[arg(long, short, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace what an earlier study left in the folder
+    #[arg(long)]
+    force: bool,
+    /// Print how many runs there are, and the first of them, and make none
+    #[arg(long)]
+    dry_run: bool,
+    /// Fail, with exit code 1, where a smaller share of the runs meets its expectations, such as 0.99
+    #[arg(long, value_name = "SHARE", value_parser = crate::args::within(0.0..=1.0, "write a share from 0 to 1"))]
+    met_at_least: Option<f64>,
+    #[command(flatten)]
+    shown: ShownArgs,
+}
+
+/// What is made of rows.
+#[derive(Debug, Args)]
+struct ShownArgs {
+    /// Film so many of the worst runs
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    film_worst: u16,
+    #[command(flatten)]
+    adapter: AdapterArgs,
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+    /// Print errors only
+    #[arg(long, short, conflicts_with = "json")]
+    quiet: bool,
+}
+
+pub(crate) fn sweep(args: &SweepArgs) -> Outcome {
+    match &args.command {
+        Some(SweepCommands::Merge(args)) => joined::merge(args),
+        Some(SweepCommands::Show(args)) => joined::show(args),
+        None => run(&args.study),
+    }
+}
+
+fn varied(text: &str) -> Result<Parameter, String> {
+    let (key, values) = text.split_once('=').ok_or("write KEY=VALUES, such as law.k=1..10/19")?;
+    let values = values.parse().map_err(|error: scene::ValuesError| error.to_string())?;
+    Ok(Parameter { key: key.trim().to_owned(), values })
+}
+
+fn sampling(text: &str) -> Result<Sampling, String> {
+    let known = Sampling::WORDS.iter().find(|(word, ..)| *word == text).map(|(_, sampling, _)| *sampling);
+    known.ok_or_else(|| {
+        let words: Vec<&str> = Sampling::WORDS.iter().map(|(word, ..)| *word).collect();
+        format!("write one of {}", words.join(", "))
+    })
+}
+
+fn scatter(text: &str) -> Result<Scatter, String> {
+    let wrong = || "write metres, or metres and an angle, such as 0.5 or \"0.5,20 deg\"".to_owned();
+    let (position, heading) = text.split_once(',').unwrap_or((text, "0"));
+    let heading = heading.trim();
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|number| *number >= 0.0);
+    let heading = match heading.strip_suffix("deg").or_else(|| heading.strip_suffix('°')) {
+        Some(degrees) => number(degrees).map(f64::to_radians),
+        None => number(heading),
+    };
+    let position = number(position).filter(|metres| *metres <= 1000.0).ok_or_else(wrong)?;
+    let heading = heading.filter(|angle| *angle <= std::f64::consts::PI + 1e-9).ok_or_else(wrong)?;
+    Ok(Scatter { position, heading })
+}
+
+fn shard(text: &str) -> Result<[u64; 2], String> {
+    let found =
+        text.split_once('/').and_then(|(i, n)| Some([i.trim().parse().ok()?, n.trim().parse().ok()?]));
+    found
+        .filter(|[i, n]| (1..=*n).contains(i))
+        .ok_or_else(|| "write I/N with I from 1 to N, such as 3/16".to_owned())
+}
+
+fn range(text: &str) -> Result<Range<u64>, String> {
+    let found = text.split_once("..").and_then(|(a, b)| Some(a.trim().parse().ok()?..b.trim().parse().ok()?));
+    found
+        .filter(|range| range.start < range.end)
+        .ok_or_else(|| "write A..B with A below B, such as 0..500".to_owned())
+}
+
+/// The study of a command line.
+fn study_of(args: &StudyArgs, subject: &Path) -> Result<Study, Failure> {
+    let is_study = Study::is_meant(subject);
+    let mut study = if is_study {
+        Study::load(subject).map_err(|errors| Failure::Usage(errors.to_string()))?
+    } else {
+        Study::of_scene(&subject.display().to_string(), &stem(subject))
+    };
+    if study.title.is_empty() {
+        study.title = stem(subject);
+    }
+    study.set.extend(args.set.iter().cloned());
+    study.parameters.extend(args.vary.iter().cloned());
+    study.seeds = args.seeds.unwrap_or(study.seeds).max(1);
+    study.samples = args.samples.unwrap_or(study.samples).max(1);
+    study.sampling = args.sampling.unwrap_or(study.sampling);
+    study.seed = args.seed.unwrap_or(study.seed);
+    study.scatter = args.scatter.unwrap_or(study.scatter);
+    study.limit = args.limit.or(study.limit);
+    Ok(study)
+}
+
+/// Faults where they stand: in the file, or on the command line.
+fn refusal(subject: &Path, faults: &[StudyFault]) -> Failure {
+    let told = Study::is_meant(subject).then(|| Study::located(subject, faults)).flatten();
+    let plain = || {
+        let line = |fault: &StudyFault| match &fault.key {
+            Some(key) => format!("--vary {key}: {}", fault.text),
+            None => fault.text.clone(),
+        };
+        faults.iter().map(line).collect::<Vec<_>>().join("\n")
+    };
+    Failure::Usage(told.map_or_else(plain, |errors| errors.to_string()))
+}
+
+/// The experiment of a study that can run.
+fn experiment_of(study: Study, subject: &Path) -> Result<Experiment, Failure> {
+    let experiment = Experiment::new(study).map_err(|error| match error {
+        sweeps::Error::Study(faults) => refusal(subject, &faults),
+        other => other.into(),
+    })?;
+    let faults = experiment.faults();
+    if !faults.is_empty() {
+        return Err(refusal(subject, &faults));
+    }
+    // What no run could be, all are told at once.
+    let scene = experiment.scene(&experiment.design().point(0)).map_err(Failure::Usage)?;
+    let run = crate::load::build(scene, &subject.display())?;
+    if run.simulation.needs_cameras() {
+        return Err(Failure::Usage(format!("{}: {}", subject.display(), sweeps::CAMERAS)));
+    }
+    Ok(experiment)
+}
+
+fn run(args: &StudyArgs) -> Outcome {
+    // Required by its declaration.
+    let Some(subject) = args.subject.as_deref() else { return Ok(()) };
+    let experiment = experiment_of(study_of(args, subject)?, subject)?;
+    let runs = experiment.study().runs();
+    let range = match (&args.range, args.shard) {
+        (Some(range), _) => range.clone(),
+        (None, Some([i, n])) => share(runs, i - 1, n)..share(runs, i, n),
+        (None, None) => 0..runs,
+    };
+    if range.end > runs {
+        return Err(Failure::Usage(format!(
+            "the study has {}: no range ends behind {runs}",
+            counted(runs, "run")
+        )));
+    }
+    if args.dry_run {
+        tell::dry(&experiment, &range, &args.shown);
+        return Ok(());
+    }
+    interrupt::watch();
+    quieten();
+    if let Some(file) = args.out.as_deref().filter(|out| out.extension().is_some_and(|e| e == "parquet")) {
+        return part(&experiment, range, file, args);
+    }
+    let part = match args.shard {
+        Some([i, n]) => format!("-{i}-of-{n}"),
+        None => {
+            args.range.as_ref().map_or_else(String::new, |range| format!("-{}-{}", range.start, range.end))
+        }
+    };
+    let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("sweeps").join(stem(subject) + &part));
+    let mut study = StudyFolder::open(&folder, &experiment, range.clone(), args.force)?;
+    let missing = study.done().missing(range.clone());
+    if !study.done().is_empty() && !args.shown.quiet {
+        let done = study.done().len();
+        note(&format!(
+            "{} holds {done} of these {} already",
+            folder.display(),
+            counted(range.end - range.start, "run")
+        ));
+    }
+    let made = make(&experiment, missing.iter(), missing.len(), args, |row| Ok(study.push(row)?), true);
+    // Whatever went wrong, what was made is kept.
+    let flushed = study.flush();
+    let made = made?;
+    flushed?;
+    if !made.finished {
+        let (done, all) = (study.done().len(), range.end - range.start);
+        return Err(Failure::Interrupted(format!(
+            "{done} of {all} runs are in {}; the same command goes on from there",
+            folder.display()
+        )));
+    }
+    study.finish()?;
+    drop(study);
+    let summary = folder::complete(&folder, &experiment, &args.shown, range == (0..runs))?;
+    tell::study(&experiment, &summary, &folder, Some(made.wall), &args.shown);
+    judge(&summary, args.met_at_least)
+}
+
+/// The first run of part `i` of `n`.
+fn share(runs: u64, i: u64, n: u64) -> u64 {
+    u64::try_from(u128::from(runs) * u128::from(i) / u128::from(n)).unwrap_or(runs)
+}
+
+fn judge(summary: &sweeps::Summary, least: Option<f64>) -> Outcome {
+    let share = summary.met as f64 / summary.runs.max(1) as f64;
+    match least.filter(|least| share < *least) {
+        None => Ok(()),
+        Some(least) => {
+            note(&format!(
+                "{:.2} % of the runs meet their expectations, and {:.2} % are asked for",
+                100.0 * share,
+                100.0 * least
+            ));
+            Err(Failure::Expectation)
+        }
+    }
+}
+
+/// One file of rows.
+fn part(experiment: &Experiment, range: Range<u64>, file: &Path, args: &StudyArgs) -> Outcome {
+    let place = output::Place::file(file)?;
+    let mut rows: Vec<Row> = vec![];
+    let count = range.end - range.start;
+    let made = make(
+        experiment,
+        range,
+        count,
+        args,
+        |row| {
+            rows.push(row);
+            Ok(())
+        },
+        false,
+    )?;
+    if !made.finished {
+        return Err(Failure::Interrupted(format!(
+            "{} of {count} runs were made, and none is kept",
+            rows.len()
+        )));
+    }
+    rows.sort_by_key(|row| row.point.index);
+    sweeps::write_rows(file, &mut RowTable::new(experiment.study()), rows.iter(), experiment.fingerprint())?;
+    drop(place);
+    Ok(())
+}
+
+/// How far the making of runs came.
+struct MadeRuns {
+    finished: bool,
+    wall: f64,
+}
+
+/// Makes runs; `keep` gets each row.
+fn make(
+    experiment: &Experiment,
+    indices: impl Iterator<Item = u64> + Send,
+    count: u64,
+    args: &StudyArgs,
+    mut keep: impl FnMut(Row) -> Result<(), Failure>,
+    counts_failures: bool,
+) -> Result<MadeRuns, Failure> {
+    let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let threads = args.threads.map_or_else(cores, usize::from);
+    let what = format!("{} of {}", counted(count, "run"), experiment.study().title);
+    let progress = Progress::begin(&what, count, args.shown.quiet || args.shown.json);
+    let (began, mut made, mut unmet) = (Instant::now(), 0, 0_u64);
+    let clock = || began.elapsed().as_secs_f64();
+    run_all(experiment, indices, threads, &clock, |event| {
+        if let Progressed::Ended(row) = event {
+            made += 1;
+            unmet += u64::from(!row.met);
+            progress.at(made);
+            if counts_failures && unmet > 0 {
+                progress.says(&format!("{what}, {unmet} unmet"));
+            }
+            keep(row)?;
+        }
+        Ok::<bool, Failure>(!interrupt::asked())
+    })?;
+    Ok(MadeRuns { finished: made == count, wall: clock() })
+}
+
+/// Panics of runs are rows of the table, and not printed besides.
+fn quieten() {
+    let before = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !std::thread::current().name().is_some_and(|name| name.starts_with(THREAD)) {
+            before(panic);
+        }
+    }));
+}

@@ -1,0 +1,276 @@
+//! Figures of a study: curves over one varied key, maps over two.
+
+use crate::design::{Axis as DesignAxis, Design};
+use crate::interval::wilson;
+use crate::measure::MEASURES;
+use crate::summary::{CellSummary, Summary};
+use figures::{Axis, Figure, Map, MapAxis, MapLine, Panel, Scale, Series};
+use scene::{ValueScale, Values};
+
+/// A figure of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StudyFigure {
+    /// Of its files.
+    pub stem: String,
+    /// What it shows.
+    pub caption: String,
+    /// As SVG.
+    pub svg: String,
+}
+
+/// What is drawn besides the share that met its expectations.
+const DRAWN: [&str; 3] = ["settling_time_s", "late_distance_error_m", "clearance_min_m"];
+const MET: &str = "share that meets its expectations";
+/// Cells of a side that are drawn at most: more are thinner than a line.
+const MOST_DRAWN: u64 = 2000;
+
+/// The figures of a study; none where nothing varies that lies on an axis. `lines` are drawn over maps of the first two keys.
+pub fn charts(design: &Design, summary: &Summary, lines: &[MapLine]) -> Vec<StudyFigure> {
+    let sides: Vec<(usize, Side)> =
+        design.axes().iter().enumerate().filter_map(|(k, axis)| Some((k, Side::of(design, axis)?))).collect();
+    match &sides[..] {
+        [] => vec![],
+        [(_, side)] => vec![curves(design, summary, side)],
+        [(a, across), (b, up), ..] => {
+            let mut figures = vec![map_of_share(design, summary, [*a, *b], [across, up], lines)];
+            if design.axes().len() == 2 {
+                let drawn =
+                    MEASURES.iter().enumerate().filter(|(_, measure)| DRAWN.contains(&measure.column));
+                figures.extend(
+                    drawn.filter_map(|(which, _)| {
+                        map_of_measure(design, summary, [*a, *b], [across, up], which)
+                    }),
+                );
+            }
+            figures
+        }
+    }
+}
+
+/// A varied key as an axis.
+#[derive(Debug, Clone)]
+struct Side {
+    key: String,
+    axis: MapAxis,
+}
+
+impl Side {
+    /// Of keys that go together the first; `None` where it has one value, or too many.
+    fn of(design: &Design, axis: &DesignAxis) -> Option<Self> {
+        let parameter = design.study().parameters.get(*axis.parameters.first()?)?;
+        let (texts, scale) = match &parameter.values {
+            Values::Grid { values, scale, .. } => (values, *scale),
+            Values::Zipped(values) => (values, ValueScale::Linear),
+            Values::Drawn { .. } | Values::Same(_) => return None,
+        };
+        if !(2..=MOST_DRAWN).contains(&(texts.len() as u64)) {
+            return None;
+        }
+        let numbers: Option<Vec<f64>> = texts.iter().map(|text| number(text)).collect();
+        let rising = |numbers: &Vec<f64>| numbers.windows(2).all(|pair| pair[0] < pair[1]);
+        let degrees = texts.iter().any(|text| text.contains("deg"));
+        let label = if degrees { format!("{} (°)", parameter.key) } else { parameter.key.clone() };
+        let scale = if scale == ValueScale::Logarithmic { Scale::Log } else { Scale::Linear };
+        let axis = match numbers.filter(rising) {
+            Some(values) => MapAxis { label, scale, values, names: vec![] },
+            None => MapAxis {
+                label,
+                scale: Scale::Linear,
+                values: (0..texts.len()).map(|k| k as f64).collect(),
+                names: texts.iter().map(|text| text.trim_matches('"').to_owned()).collect(),
+            },
+        };
+        Some(Self { key: parameter.key.clone(), axis })
+    }
+}
+
+/// A value of a key as a number, in degrees if it is one.
+fn number(text: &str) -> Option<f64> {
+    let text = text.trim().trim_matches('"').trim();
+    let text = text.strip_suffix("deg").or_else(|| text.strip_suffix('°')).unwrap_or(text);
+    text.trim_end().parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+/// Cells summed over all other keys: what is left is a value for each place along some axes.
+fn shares(design: &Design, summary: &Summary, axes: &[usize]) -> Vec<CellSummary> {
+    let lens: Vec<u64> = axes.iter().filter_map(|axis| Some(design.axes().get(*axis)?.len)).collect();
+    let none = CellSummary { runs: 0, met: 0, with_contacts: 0, quantiles: vec![], ..empty() };
+    let mut all = vec![none; lens.iter().product::<u64>() as usize];
+    for cell in &summary.cells {
+        let places = design.places(cell.cell);
+        let place = axes.iter().zip(&lens).fold(0, |place, (axis, len)| place * len + places[*axis]);
+        let Some(sum) = all.get_mut(place as usize) else { continue };
+        sum.runs += cell.runs;
+        sum.met += cell.met;
+        sum.with_contacts += cell.with_contacts;
+        sum.quantiles.clone_from(&cell.quantiles);
+    }
+    for sum in &mut all {
+        sum.share = if sum.runs == 0 { f64::NAN } else { sum.met as f64 / sum.runs as f64 };
+        sum.interval = wilson(sum.met, sum.runs);
+    }
+    all
+}
+
+fn empty() -> CellSummary {
+    CellSummary {
+        cell: 0,
+        values: vec![],
+        runs: 0,
+        met: 0,
+        share: f64::NAN,
+        interval: [0.0, 1.0],
+        with_contacts: 0,
+        quantiles: vec![],
+    }
+}
+
+const BLUE: figures::Rgb = [0.0, 0.447, 0.698];
+
+fn curves(design: &Design, summary: &Summary, side: &Side) -> StudyFigure {
+    let which = design.axes().iter().position(|axis| {
+        axis.parameters
+            .first()
+            .and_then(|index| design.study().parameters.get(*index))
+            .is_some_and(|p| p.key == side.key)
+    });
+    let cells = shares(design, summary, &[which.unwrap_or(0)]);
+    let points = |of: &dyn Fn(&CellSummary) -> f64| -> Vec<[f64; 2]> {
+        side.axis.values.iter().zip(&cells).map(|(x, cell)| [*x, of(cell)]).collect()
+    };
+    let band = |of: [&dyn Fn(&CellSummary) -> f64; 3], label: &str, axis: Axis| {
+        let edge = |points| Series { colour: BLUE, faint: true, points, ..Series::default() };
+        let middle = Series { colour: BLUE, points: points(of[1]), ..Series::default() };
+        Panel {
+            axis: Axis { label: label.to_owned(), ..axis },
+            series: vec![edge(points(of[0])), edge(points(of[2])), middle],
+            ..Panel::default()
+        }
+    };
+    let unit = Axis { range: Some([0.0, 1.0]), ..Axis::default() };
+    let mut panels = vec![band([&|c| c.interval[0], &|c| c.share, &|c| c.interval[1]], MET, unit)];
+    if design.axes().len() == 1 {
+        for (which, measure) in MEASURES.iter().enumerate().filter(|(_, m)| DRAWN.contains(&m.column)) {
+            let at = move |share: usize| {
+                move |cell: &CellSummary| cell.quantiles.get(which).map_or(f64::NAN, |q| q[share])
+            };
+            let (low, middle, high) = (at(0), at(1), at(2));
+            if cells.iter().any(|cell| middle(cell).is_finite()) {
+                let zero = Axis { show: vec![0.0], ..Axis::default() };
+                panels.push(band([&low, &middle, &high], measure.label, zero));
+            }
+        }
+    }
+    let figure = Figure {
+        title: design.study().title.clone(),
+        axis: Axis { label: side.axis.label.clone(), scale: side.axis.scale, ..Axis::default() },
+        panels,
+        ..Figure::default()
+    };
+    let caption = format!(
+        "Over {}: the share of runs that meets its expectations with its 95 % interval; then medians, with 5 % and 95 % of the runs.",
+        side.key
+    );
+    StudyFigure { stem: "curves".to_owned(), caption, svg: figure.svg() }
+}
+
+fn map(design: &Design, [across, up]: [&Side; 2], cells: &[f64], label: &str) -> Map {
+    // The first key is the slower: its places are columns of the map, and a map has its cells row by row.
+    let (columns, rows) = (across.axis.values.len(), up.axis.values.len());
+    let turned = (0..rows).flat_map(|row| (0..columns).map(move |column| column * rows + row));
+    Map {
+        title: design.study().title.clone(),
+        across: across.axis.clone(),
+        up: up.axis.clone(),
+        cells: turned.map(|place| cells.get(place).copied().unwrap_or(f64::NAN)).collect(),
+        label: label.to_owned(),
+        ..Map::default()
+    }
+}
+
+fn map_of_share(
+    design: &Design,
+    summary: &Summary,
+    axes: [usize; 2],
+    sides: [&Side; 2],
+    lines: &[MapLine],
+) -> StudyFigure {
+    let cells: Vec<f64> = shares(design, summary, &axes).iter().map(|cell| cell.share).collect();
+    let map = Map { range: Some([0.0, 1.0]), lines: lines.to_vec(), ..map(design, sides, &cells, MET) };
+    let others = design.axes().len() - 2;
+    let over = if others == 0 { String::new() } else { ", over all values of the other keys".to_owned() };
+    let caption = format!("The {MET}, over {} and {}{over}.", sides[0].key, sides[1].key);
+    StudyFigure { stem: "map-met".to_owned(), caption, svg: map.svg() }
+}
+
+fn map_of_measure(
+    design: &Design,
+    summary: &Summary,
+    axes: [usize; 2],
+    sides: [&Side; 2],
+    which: usize,
+) -> Option<StudyFigure> {
+    let measure = MEASURES.get(which)?;
+    let median = |cell: &CellSummary| cell.quantiles.get(which).map_or(f64::NAN, |quantiles| quantiles[1]);
+    let cells: Vec<f64> = shares(design, summary, &axes).iter().map(median).collect();
+    if !cells.iter().any(|value| value.is_finite()) {
+        return None;
+    }
+    // A few runs that fly apart do not take the colours from all others.
+    let ratio = cells.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(*b))
+        / cells.iter().filter(|v| v.is_finite() && **v > 0.0).fold(f64::INFINITY, |a, b| a.min(*b));
+    let scale = if ratio > 100.0 { Scale::Log } else { Scale::Linear };
+    let reversed = measure.column != "clearance_min_m";
+    let map = Map { scale, reversed, ..map(design, sides, &cells, measure.label) };
+    let caption = format!(
+        "Median of {}, over {} and {}; crosses: no run has it.",
+        measure.label, sides[0].key, sides[1].key
+    );
+    let stem = format!("map-{}", measure.column.replace('_', "-"));
+    Some(StudyFigure { stem, caption, svg: map.svg() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row::{Row, RowStatus};
+    use crate::summary::SummaryBuilder;
+    use scene::{Parameter, Study};
+
+    fn figures(keys: &[(&str, &str)], seeds: u64) -> Vec<StudyFigure> {
+        let parameter = |(key, values): &(&str, &str)| Parameter {
+            key: (*key).to_owned(),
+            values: values.parse().expect("values"),
+        };
+        let parameters = keys.iter().map(parameter).collect();
+        let design = Design::new(Study { parameters, seeds, ..Study::of_scene("circle-three", "A study") });
+        let mut builder = SummaryBuilder::new(&design, 0);
+        for index in 0..design.study().runs() {
+            let mut row = Row::of(design.point(index), RowStatus::Complete, String::new());
+            row.met = index % 3 == 0;
+            row.measures = vec![index as f64; MEASURES.len()];
+            builder.push(row);
+        }
+        charts(&design, &builder.finish(), &[])
+    }
+
+    #[test]
+    fn one_key_gives_curves_and_two_give_maps() {
+        let stems =
+            |figures: Vec<StudyFigure>| figures.into_iter().map(|figure| figure.stem).collect::<Vec<_>>();
+        assert_eq!(stems(figures(&[("law.k", "1..10/4")], 5)), ["curves"]);
+        let maps = ["map-met", "map-late-distance-error-m", "map-settling-time-s", "map-clearance-min-m"];
+        assert_eq!(stems(figures(&[("law.k", "1..10/4"), ("law.beta", "1,2")], 5)), maps);
+        assert_eq!(
+            stems(figures(&[("law.k", "1..10/4"), ("law.beta", "1,2"), ("vehicle.kind", "car,unicycle")], 2)),
+            ["map-met"]
+        );
+        assert!(figures(&[("law.k", "uniform:1..2")], 5).is_empty());
+    }
+
+    #[test]
+    fn what_is_no_number_has_its_name_on_the_axis() {
+        let drawn = figures(&[("vehicle.kind", "car,unicycle"), ("robots.b.bearing", "-135..-90 deg/3")], 1);
+        assert!(drawn[0].svg.contains(">unicycle<") && drawn[0].svg.contains("robots.b.bearing (°)"));
+    }
+}

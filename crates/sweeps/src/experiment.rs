@@ -1,0 +1,254 @@
+//! A study with the scene it is of: what it takes to make any of its runs.
+
+use crate::design::{Design, RunPoint};
+use crate::error::Error;
+use crate::measure::MEASURES;
+use crate::row::{Row, RowStatus};
+use recording::Status;
+use scene::{Diagnostics, Loaded, Override, Role, Scene, Study, StudyFault, Values, value_text};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use studies::copies::{Episode, StartScatter};
+use studies::run::JudgedRun;
+use studies::{PROGRAM, SceneRun};
+use xxhash_rust::xxh3::Xxh3;
+
+/// A study with the scene it is of.
+#[derive(Debug, Clone)]
+pub struct Experiment {
+    design: Design,
+    /// Text of the scene.
+    text: String,
+    /// Where it stands; what it names is looked for beside it.
+    path: PathBuf,
+    fingerprint: String,
+}
+
+/// Says whether a run goes on.
+pub type GoOn<'a> = &'a dyn Fn() -> bool;
+
+impl Experiment {
+    /// Reads the scene of `study`.
+    ///
+    /// # Errors
+    /// [`Error::Study`] for what is wrong with the study itself, [`Error::Scene`] for what is wrong with the scene as it is, or
+    /// with the overrides of all runs.
+    pub fn new(study: Study) -> Result<Self, Error> {
+        let faults = study.faults();
+        if !faults.is_empty() {
+            return Err(Error::Study(faults));
+        }
+        let path = PathBuf::from(&study.scene);
+        let Loaded { text, files, .. } = Scene::load(&path, &study.set).map_err(Error::Scene)?;
+        let mut hash = Xxh3::new();
+        // Neither its title nor where the scene lies makes a study another.
+        let same = Study { title: String::new(), scene: String::new(), ..study.clone() };
+        for part in [PROGRAM, &same.to_toml(), &text] {
+            hash.update(part.as_bytes());
+            hash.update(&[0]);
+        }
+        for file in files.iter().skip(1) {
+            hash.update(&std::fs::read(file).unwrap_or_default());
+            hash.update(&[0]);
+        }
+        let fingerprint = format!("{:032x}", hash.digest128());
+        Ok(Self { design: Design::new(study), text, path, fingerprint })
+    }
+
+    /// Which run has which values.
+    pub fn design(&self) -> &Design {
+        &self.design
+    }
+
+    /// The study.
+    pub fn study(&self) -> &Study {
+        self.design.study()
+    }
+
+    /// Text of the scene, without overrides.
+    pub fn scene_text(&self) -> &str {
+        &self.text
+    }
+
+    /// 32 hexadecimal digits that are others where the study, the scene, a file it names, or the program is another.
+    pub fn fingerprint(&self) -> &str {
+        &self.fingerprint
+    }
+
+    /// Tries the ends of everything that varies, one key after the other: faults name the key and stand where a study's own do.
+    pub fn faults(&self) -> Vec<StudyFault> {
+        let (study, first) = (self.study(), self.design.point(0));
+        let mut faults = vec![];
+        for (index, parameter) in study.parameters.iter().enumerate() {
+            let ends: Vec<String> = match &parameter.values {
+                Values::Grid { values, .. } | Values::Zipped(values) if values.len() > MOST_TRIED => {
+                    values.iter().take(1).chain(values.last()).cloned().collect()
+                }
+                Values::Grid { values, .. } | Values::Zipped(values) => values.clone(),
+                Values::Drawn { distribution: scene::Distribution::Normal { mean, .. }, degrees } => {
+                    vec![value_text(*mean, *degrees)]
+                }
+                Values::Drawn {
+                    distribution: scene::Distribution::Uniform(ends) | scene::Distribution::LogUniform(ends),
+                    degrees,
+                } => ends.map(|end| value_text(end, *degrees)).to_vec(),
+                Values::Same(_) => vec![],
+            };
+            for value in ends {
+                let mut point = first.clone();
+                point.values[index].clone_from(&value);
+                let Err(refusal) = self.scene(&point) else { continue };
+                let text = format!("`{}` cannot be {value}: {refusal}", parameter.key);
+                faults.push(StudyFault { key: Some(parameter.key.clone()), text });
+                break;
+            }
+        }
+        faults
+    }
+
+    /// The overrides of a run: what `echelon run` needs to make it again.
+    ///
+    /// # Errors
+    /// What is wrong with the scene then.
+    pub fn overrides(&self, point: &RunPoint) -> Result<Vec<Override>, String> {
+        let mut overrides = self.design.overrides(point)?;
+        let scatter = self.study().scatter;
+        if scatter.position > 0.0 || scatter.heading > 0.0 {
+            let mut scene = self.parsed(&overrides)?;
+            let follows = |index: &usize| matches!(scene.robots[*index].role, Role::Follow(_));
+            let robots: Vec<usize> = (0..scene.robots.len()).filter(follows).collect();
+            let starts =
+                StartScatter { robots: robots.clone(), position: scatter.position, heading: scatter.heading };
+            let episode = Episode { seed: point.seed, number: 0 };
+            starts.scatter(&mut scene, episode).map_err(|error| error.to_string())?;
+            for robot in robots.into_iter().map(|index| &scene.robots[index]) {
+                let [x, y, heading] =
+                    [robot.pose.x, robot.pose.y, robot.pose.heading].map(|v| value_text(v, false));
+                let text = format!("robots.{}.pose=[{x}, {y}, {heading}]", robot.name);
+                overrides.push(text.parse().map_err(|error: scene::OverrideError| error.to_string())?);
+            }
+        }
+        Ok(overrides)
+    }
+
+    /// The scene of a run.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn scene(&self, point: &RunPoint) -> Result<Scene, String> {
+        self.parsed(&self.overrides(point)?)
+    }
+
+    fn parsed(&self, overrides: &[Override]) -> Result<Scene, String> {
+        let loaded = Scene::parse(&self.text, &self.path, overrides);
+        loaded.map(|loaded| loaded.scene).map_err(|errors| first(&errors))
+    }
+
+    /// Makes run `index`; `None` where `go_on` said no. `clock` tells seconds since any moment.
+    pub fn run(&self, index: u64, clock: &dyn Fn() -> f64, go_on: GoOn<'_>) -> Option<Row> {
+        let (point, began) = (self.design.point(index), clock());
+        let limit = self.study().limit.unwrap_or(f64::INFINITY);
+        let late = || clock() - began > limit;
+        let made = catch_unwind(AssertUnwindSafe(|| self.judged(&point, &|| go_on() && !late())));
+        let mut row = match made {
+            Ok(Made::Judged(judged)) if judged.status != Status::Interrupted => Row { point, ..row(&judged) },
+            Ok(Made::Judged(judged)) if late() => {
+                let reason = format!(
+                    "the run took longer than {limit} s, at {:.2} s of its time",
+                    judged.metrics.duration
+                );
+                let time = judged.metrics.duration;
+                Row { failed_time: time, ..Row::of(point, RowStatus::Expired, reason) }.with(&judged)
+            }
+            Ok(Made::Judged(_)) => return None,
+            Ok(Made::Not(status, reason)) => Row::of(point, status, reason),
+            Err(payload) => Row::of(point, RowStatus::Panicked, message(payload.as_ref())),
+        };
+        row.wall_time = clock() - began;
+        Some(row)
+    }
+
+    fn judged(&self, point: &RunPoint, go_on: GoOn<'_>) -> Made {
+        let scene = match self.scene(point) {
+            Ok(scene) => scene,
+            Err(refusal) => return Made::Not(RowStatus::Refused, refusal),
+        };
+        let run = match SceneRun::new(scene) {
+            Ok(run) => run,
+            Err(error) => return Made::Not(RowStatus::Refused, error.to_string()),
+        };
+        if run.simulation.needs_cameras() {
+            return Made::Not(RowStatus::Refused, CAMERAS.to_owned());
+        }
+        match studies::run::run(run, None, None, |_| go_on()) {
+            Ok(judged) => Made::Judged(Box::new(judged)),
+            Err(error) => Made::Not(RowStatus::Broken, error.to_string()),
+        }
+    }
+}
+
+/// Most values of a key that are all tried before a study begins.
+const MOST_TRIED: usize = 1000;
+/// Why a scene with cameras is no scene of a study.
+pub const CAMERAS: &str = "its robots take pictures, which takes too long for many runs: calculated tags err alike (set \
+    sensing.kind=geometric and sensing.pixel_noise=0.05)";
+
+/// What became of a run.
+enum Made {
+    Judged(Box<JudgedRun>),
+    Not(RowStatus, String),
+}
+
+/// What a row of a run that ended says, but for which run it is.
+fn row(judged: &JudgedRun) -> Row {
+    let status = if judged.status == Status::Complete { RowStatus::Complete } else { RowStatus::Stopped };
+    let mut row = Row::of(RunPoint::default(), status, String::new()).with(judged);
+    row.digest.clone_from(&judged.digest);
+    let unmet = judged.findings.iter().filter(|finding| finding.failed());
+    let timed = unmet.map(|finding| (failed_at(finding.key, judged), finding));
+    let first = timed.min_by(|a, b| a.0.total_cmp(&b.0));
+    row.met = first.is_none();
+    if let Some((time, finding)) = first {
+        finding.key.clone_into(&mut row.failed);
+        row.failed_time = time;
+        row.reason = format!("wanted: {}; found: {}", finding.wanted, finding.found);
+    }
+    row
+}
+
+/// When it was clear that an expectation would not be met, s.
+fn failed_at(key: &str, judged: &JudgedRun) -> f64 {
+    let metrics = &judged.metrics;
+    let found = match key {
+        "no_contact" | "on_contact" | "contacts_exactly" | "contact_impulse_within" => {
+            metrics.first_contacts.first().map(|contact| contact.begin)
+        }
+        "clearance_min" => metrics.clearance_min_time,
+        "law" => metrics.law_faults.first().map(|fault| fault.time),
+        _ => None,
+    };
+    found.unwrap_or(metrics.duration)
+}
+
+impl Row {
+    /// With the numbers of a run.
+    fn with(self, judged: &JudgedRun) -> Self {
+        let measures = MEASURES.iter().map(|measure| measure.of(&judged.metrics)).collect();
+        Self { contacts: judged.metrics.contacts as u64, measures, ..self }
+    }
+}
+
+/// What a panic says.
+fn message(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
+    format!("a fault of the program: {}", text.unwrap_or_else(|| "it says nothing".to_owned()))
+}
+
+/// The first thing that is wrong, without the place in a text that nobody wrote.
+fn first(errors: &Diagnostics) -> String {
+    let more = errors.all().len() - 1;
+    let first = errors.all().first().map_or_else(String::new, |first| first.message.clone());
+    if more == 0 { first } else { format!("{first} (and {more} more)") }
+}

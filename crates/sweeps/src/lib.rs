@@ -1,0 +1,32 @@
+//! Studies of many runs: one run shows that a law can work, a claim needs a thousand.
+//!
+//! A [`Study`](scene::Study) says what varies. With its scene it is an [`Experiment`]; its [`Design`] says which run has which
+//! values and which seed, and [`run_all`] makes runs on all cores. Every run is a [`Row`], which a [`StudyFolder`] puts on the
+//! disk as it ends. A [`Summary`] tells what all rows say, cell by cell.
+//!
+//! Rows do not depend on cores, order or machine: a run's values and seed are functions of the study and the run's index.
+
+mod chart;
+mod design;
+mod error;
+mod experiment;
+mod folder;
+mod index_set;
+mod interval;
+mod measure;
+mod row;
+mod runner;
+mod sampling;
+mod summary;
+
+pub use chart::{StudyFigure, charts};
+pub use design::{Axis, Design, RunPoint};
+pub use error::Error;
+pub use experiment::{CAMERAS, Experiment, GoOn};
+pub use folder::{StudyFolder, StudyManifest, for_every_row, merge, row_files, write_rows};
+pub use index_set::IndexSet;
+pub use interval::wilson;
+pub use measure::{MEASURES, Measure};
+pub use row::{Row, RowStatus, RowTable};
+pub use runner::{Progressed, THREAD, run_all};
+pub use summary::{CellSummary, Summary, SummaryBuilder};
