@@ -2,7 +2,7 @@
 
 use crate::print::{harmless, note};
 use indicatif::{ProgressBar, ProgressStyle};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 pub(crate) enum Progress {
     Nothing,
     Bar(ProgressBar),
-    Lines { steps: u64, told: Cell<Instant> },
+    Lines { steps: u64, told: Cell<Instant>, more: RefCell<String> },
 }
 
 /// Between two lines where there is no terminal.
@@ -24,7 +24,7 @@ impl Progress {
         }
         if !std::io::stderr().is_terminal() {
             note(&format!("{what} …"));
-            return Self::Lines { steps, told: Cell::new(Instant::now()) };
+            return Self::Lines { steps, told: Cell::new(Instant::now()), more: RefCell::default() };
         }
         let bar = ProgressBar::new(steps).with_message(harmless(what).into_owned());
         if let Ok(style) = ProgressStyle::with_template("{msg} [{bar:30}] {percent:>3} %  {eta} left") {
@@ -34,10 +34,12 @@ impl Progress {
         Self::Bar(bar)
     }
 
-    /// What the job is, where that has changed.
-    pub(crate) fn says(&self, what: &str) {
-        if let Self::Bar(bar) = self {
-            bar.set_message(harmless(what).into_owned());
+    /// What has become of the job so far, besides where it is; `what` is what it was begun with.
+    pub(crate) fn says(&self, what: &str, more: &str) {
+        match self {
+            Self::Nothing => {}
+            Self::Bar(bar) => bar.set_message(harmless(&format!("{what}, {more}")).into_owned()),
+            Self::Lines { more: said, .. } => more.clone_into(&mut said.borrow_mut()),
         }
     }
 
@@ -46,10 +48,12 @@ impl Progress {
         match self {
             Self::Nothing => {}
             Self::Bar(bar) => bar.set_position(step),
-            Self::Lines { steps, told } => {
+            Self::Lines { steps, told, more } => {
                 if told.get().elapsed() >= PAUSE {
                     told.set(Instant::now());
-                    note(&format!("{step} of {steps}"));
+                    let more = more.borrow();
+                    let more = if more.is_empty() { String::new() } else { format!(", {more}") };
+                    note(&format!("{step} of {steps}{more}"));
                 }
             }
         }

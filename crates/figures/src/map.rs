@@ -223,9 +223,8 @@ impl Map {
                 let corner = [left + x[0] * wide, top + (1.0 - y[1]) * high];
                 let size = [(x[1] - x[0]) * wide, (y[1] - y[0]) * high];
                 let fill = fill.unwrap_or_else(|| NONE.to_owned());
-                // Neighbours overlap a little, so that no seam shows.
-                let size = [size[0] + 0.15, size[1] + 0.15];
-                svg.rect(corner, size, &format!("fill=\"{fill}\""));
+                // No seam shows between neighbours.
+                svg.rect(corner, size, &format!("fill=\"{fill}\" shape-rendering=\"crispEdges\""));
                 if fill == NONE {
                     let [x, y] = [corner[0] + 0.5 * size[0], corner[1] + 0.5 * size[1]];
                     let arm = 1.4_f64.min(0.3 * size[0]).min(0.3 * size[1]);
@@ -270,8 +269,8 @@ impl Map {
         const STEPS: usize = 64;
         for step in 0..STEPS {
             let [low, up] = [step, step + 1].map(|k| k as f64 / STEPS as f64);
-            let fill = format!("fill=\"{}\"", self.colour(0.5 * (low + up)));
-            svg.rect([left, top + (1.0 - up) * high], [wide, (up - low) * high + 0.15], &fill);
+            let fill = format!("fill=\"{}\" shape-rendering=\"crispEdges\"", self.colour(0.5 * (low + up)));
+            svg.rect([left, top + (1.0 - up) * high], [wide, (up - low) * high], &fill);
         }
         svg.rect([left, top], [wide, high], THIN);
         for tick in bar.ticks(6) {

@@ -84,6 +84,36 @@ impl Side {
     }
 }
 
+/// The sides between neighbouring cells of a map as a line over it; `None` where the study has no map.
+pub fn edge_line(design: &Design, pairs: &[[u64; 2]]) -> Option<MapLine> {
+    let [across, up] = design.axes() else { return None };
+    let sides = [Side::of(design, across)?, Side::of(design, up)?];
+    // Halfway to a neighbour as the axis lies.
+    let halfway = |side: &Side, place: i64, by: i64| {
+        let values = &side.axis.values;
+        let last = values.len() as i64 - 1;
+        let at = |k: i64| values[k.clamp(0, last) as usize];
+        let (here, there) = (at(place), at(place + by));
+        let there = if (0..=last).contains(&(place + by)) { there } else { here };
+        if side.axis.scale == Scale::Log { (here * there).sqrt() } else { f64::midpoint(here, there) }
+    };
+    let mut points = vec![];
+    for [a, b] in pairs {
+        let [a, b] = [a.min(b), a.max(b)].map(|cell| design.places(*cell));
+        let ([x, y], beside) = ([a[0] as i64, a[1] as i64], a[0] != b[0]);
+        let ends = [-1, 1].map(|by| {
+            if beside {
+                [halfway(&sides[0], x, 1), halfway(&sides[1], y, by)]
+            } else {
+                [halfway(&sides[0], x, by), halfway(&sides[1], y, 1)]
+            }
+        });
+        points.extend(ends);
+        points.push([f64::NAN; 2]);
+    }
+    Some(MapLine { points, ..MapLine::default() })
+}
+
 /// A value of a key as a number, in degrees if it is one.
 fn number(text: &str) -> Option<f64> {
     let text = text.trim().trim_matches('"').trim();

@@ -35,7 +35,7 @@ pub struct StudyManifest {
     pub runs: u64,
     /// First run of this folder, and the first that is none of its.
     pub range: [u64; 2],
-    /// Whether all of these have been made.
+    /// Whether all of these have been made, or all that the search for an edge asked for.
     pub complete: bool,
 }
 
@@ -175,7 +175,14 @@ impl StudyFolder {
     fn recall(&mut self) -> Result<(), Error> {
         let whole = self.folder.join(RUNS);
         for path in row_files(&self.folder)? {
-            for index in indices(&path)? {
+            let indices = indices(&path)?;
+            if path != whole && !indices.is_empty() && indices.iter().all(|index| self.done.contains(*index))
+            {
+                // It was joined with the others, and the program ended before it was removed.
+                fs::remove_file(&path).map_err(output::Error::io("remove", &path))?;
+                continue;
+            }
+            for index in indices {
                 if !self.done.insert(index) {
                     return Err(twice(index, &path));
                 }
@@ -183,7 +190,6 @@ impl StudyFolder {
             let number = path.file_stem().and_then(|stem| stem.to_str()?.parse::<u64>().ok());
             self.next_part = self.next_part.max(number.map_or(0, |number| number + 1));
         }
-        self.manifest.complete = whole.exists();
         Ok(())
     }
 
@@ -213,26 +219,20 @@ impl StudyFolder {
         Ok(())
     }
 
-    /// Makes one file of all rows, once all are there; says whether they are.
+    /// Makes one file of all rows: those that are there are all that are wanted.
     ///
     /// # Errors
     /// [`Error`] where the disk does not take it.
-    pub fn finish(&mut self) -> Result<bool, Error> {
+    pub fn finish(&mut self) -> Result<(), Error> {
         self.flush()?;
-        let [from, to] = self.manifest.range;
-        if self.done.len() < to - from {
-            return Ok(false);
-        }
-        let whole = self.folder.join(RUNS);
-        if !whole.exists() {
-            let mark = &self.manifest.fingerprint;
-            join(&row_files(&self.folder)?, &whole, &mut self.table, mark)?;
+        let (whole, files) = (self.folder.join(RUNS), row_files(&self.folder)?);
+        if files != [whole.clone()] {
+            join(&files, &whole, &mut self.table, &self.manifest.fingerprint)?;
         }
         let parts = self.folder.join(PARTS);
         fs::remove_dir_all(&parts).map_err(output::Error::io("remove", &parts))?;
         self.manifest.complete = true;
-        self.write_manifest()?;
-        Ok(true)
+        self.write_manifest()
     }
 }
 
@@ -242,21 +242,21 @@ fn ours() -> Vec<String> {
     [MANIFEST, STUDY, SCENE, PARTS, RUNS].into_iter().chain(more).map(str::to_owned).collect()
 }
 
-/// The files with the rows of the study in `folder`, in the order of their names.
+/// The files with the rows of the study in `folder`: those that were joined first, then parts in the order of their names.
 ///
 /// # Errors
 /// Where the folder cannot be read.
 pub fn row_files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
-    let whole = folder.join(RUNS);
-    if whole.exists() {
-        return Ok(vec![whole]);
-    }
+    let whole = Some(folder.join(RUNS)).filter(|whole| whole.exists());
     let parts = folder.join(PARTS);
-    let Ok(entries) = fs::read_dir(&parts) else { return Ok(vec![]) };
-    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    let mut files: Vec<PathBuf> = match fs::read_dir(&parts) {
+        Ok(entries) => entries.flatten().map(|entry| entry.path()).collect(),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => vec![],
+        Err(error) => return Err(output::Error::io("read", &parts)(error).into()),
+    };
     files.retain(|path| path.extension().is_some_and(|ending| ending == "parquet"));
     files.sort();
-    Ok(files)
+    Ok(whole.into_iter().chain(files).collect())
 }
 
 /// Writes rows as a file of their own, which carries the fingerprint of their study.
@@ -376,10 +376,11 @@ pub fn merge(
 /// # Errors
 /// [`Error`] where they cannot be read.
 pub fn for_every_row(folder: &Path, experiment: &Experiment, mut take: impl FnMut(Row)) -> Result<(), Error> {
+    let mut seen = IndexSet::default();
     for path in row_files(folder)? {
         let mut table = RowTable::new(experiment.study());
         append_columns(&path, table.columns_mut())?;
-        table.rows().for_each(&mut take);
+        table.rows().filter(|row| seen.insert(row.point.index)).for_each(&mut take);
     }
     Ok(())
 }

@@ -6,6 +6,7 @@
 //!
 //! Rows do not depend on cores, order or machine: a run's values and seed are functions of the study and the run's index.
 
+mod boundary;
 mod chart;
 mod design;
 mod error;
@@ -19,7 +20,8 @@ mod runner;
 mod sampling;
 mod summary;
 
-pub use chart::{StudyFigure, charts};
+pub use boundary::Boundary;
+pub use chart::{StudyFigure, charts, edge_line};
 pub use design::{Axis, Design, RunPoint};
 pub use error::Error;
 pub use experiment::{CAMERAS, Experiment, GoOn};

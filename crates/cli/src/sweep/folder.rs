@@ -5,6 +5,7 @@ use super::tell;
 use crate::failure::Failure;
 use crate::film;
 use crate::load::build;
+use figures::MapLine;
 use footage::{DrawJob, FilmJob, PictureOptions};
 use output::write_whole;
 use report::{Rasterizer, Report, ReportFigure, ReportFilm};
@@ -22,6 +23,7 @@ pub(super) fn complete(
     experiment: &Experiment,
     args: &ShownArgs,
     whole: bool,
+    lines: &[MapLine],
 ) -> Result<Summary, Failure> {
     let keep = WORST.max(usize::from(args.film_worst));
     let mut builder = SummaryBuilder::new(experiment.design(), keep);
@@ -31,7 +33,7 @@ pub(super) fn complete(
         return Ok(summary);
     }
     write_whole(&folder.join("summary.csv"), tell::csv(experiment, &summary).as_bytes())?;
-    let charts = charts(experiment.design(), &summary, &[]);
+    let charts = charts(experiment.design(), &summary, lines);
     let figures = folder.join("figures");
     fs::create_dir_all(&figures).map_err(output::Error::io("create", &figures))?;
     let rasterizer = Rasterizer::new(&[rendering::FONT]);

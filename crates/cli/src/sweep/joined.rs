@@ -59,8 +59,8 @@ pub(super) fn merge(args: &MergeArgs) -> Outcome {
             if missing.len() == 1 { "is" } else { "are" }
         )));
     }
-    let summary = folder::complete(&args.out, &experiment, &args.shown, true)?;
-    tell::study(&experiment, &summary, &args.out, None, &args.shown);
+    let summary = folder::complete(&args.out, &experiment, &args.shown, true, &[])?;
+    tell::study(&experiment, &summary, &args.out, &tell::Effort::default(), &args.shown);
     Ok(())
 }
 
@@ -68,11 +68,11 @@ pub(super) fn show(args: &ShowArgs) -> Outcome {
     let manifest = StudyFolder::manifest_of(&args.folder)?;
     let experiment = recalled(&args.folder)?;
     let whole = manifest.complete && manifest.range == [0, manifest.runs];
-    let summary = folder::complete(&args.folder, &experiment, &args.shown, whole)?;
+    let summary = folder::complete(&args.folder, &experiment, &args.shown, whole, &[])?;
     if !whole && !args.shown.quiet {
         note(&format!("{} of {} runs are there so far", summary.runs, manifest.runs));
     }
-    tell::study(&experiment, &summary, &args.folder, None, &args.shown);
+    tell::study(&experiment, &summary, &args.folder, &tell::Effort::default(), &args.shown);
     Ok(())
 }
 

@@ -1,5 +1,6 @@
 //! `echelon sweep`: many runs of a scene, their table, figures and report.
 
+mod boundary;
 mod folder;
 mod joined;
 mod tell;
@@ -67,6 +68,10 @@ struct StudyArgs {
     /// Give up a run that takes longer, s; its row says so
     #[arg(long, value_name = "S", value_parser = crate::args::within(0.001..=1e9, "write seconds, such as 10"))]
     limit: Option<f64>,
+    /// Make only the runs that it takes to find where the answer changes: `met` is whether most runs of a combination meet
+    /// their expectations; over one or two varied keys
+    #[arg(long, value_name = "ANSWER", value_parser = ["met"], conflicts_with_all = ["shard", "range"])]
+    boundary: Option<String>,
     /// Make one of N parts of the study, such as 3/16
     #[arg(long, value_name = "I/N", value_parser = shard, conflicts_with = "range")]
     shard: Option<[u64; 2]>,
@@ -246,7 +251,6 @@ fn run(args: &StudyArgs) -> Outcome {
     };
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("sweeps").join(stem(subject) + &part));
     let mut study = StudyFolder::open(&folder, &experiment, range.clone(), args.force)?;
-    let missing = study.done().missing(range.clone());
     if !study.done().is_empty() && !args.shown.quiet {
         let done = study.done().len();
         note(&format!(
@@ -255,22 +259,34 @@ fn run(args: &StudyArgs) -> Outcome {
             counted(range.end - range.start, "run")
         ));
     }
-    let made = make(&experiment, missing.iter(), missing.len(), args, |row| Ok(study.push(row)?), true);
+    let (mut effort, mut edge) = (tell::Effort::default(), None);
+    let outcome = if args.boundary.is_some() {
+        boundary::search(&experiment, &folder, &mut study, args, &mut effort).map(|found| edge = Some(found))
+    } else {
+        let missing = study.done().missing(range.clone());
+        keep(&experiment, missing.iter(), missing.len(), &mut study, args, &mut effort, |_| ())
+    };
     // Whatever went wrong, what was made is kept.
     let flushed = study.flush();
-    let made = made?;
-    flushed?;
-    if !made.finished {
+    if let Err(failure) = outcome {
         let (done, all) = (study.done().len(), range.end - range.start);
-        return Err(Failure::Interrupted(format!(
-            "{done} of {all} runs are in {}; the same command goes on from there",
-            folder.display()
-        )));
+        return Err(match failure {
+            Failure::Interrupted(_) => Failure::Interrupted(format!(
+                "{done} of {all} runs are in {}; the same command goes on from there",
+                folder.display()
+            )),
+            other => other.but(&format!("{} keeps {}", folder.display(), counted(done, "run"))),
+        });
     }
+    flushed?;
     study.finish()?;
     drop(study);
-    let summary = folder::complete(&folder, &experiment, &args.shown, range == (0..runs))?;
-    tell::study(&experiment, &summary, &folder, Some(made.wall), &args.shown);
+    let lines: Vec<figures::MapLine> = edge.iter().filter_map(|edge| edge.line.clone()).collect();
+    let summary = folder::complete(&folder, &experiment, &args.shown, range == (0..runs), &lines)?;
+    tell::study(&experiment, &summary, &folder, &effort, &args.shown);
+    if let Some(edge) = edge.filter(|_| !args.shown.quiet && !args.shown.json) {
+        edge.tell(&experiment);
+    }
     judge(&summary, args.met_at_least)
 }
 
@@ -297,46 +313,64 @@ fn judge(summary: &sweeps::Summary, least: Option<f64>) -> Outcome {
 /// One file of rows.
 fn part(experiment: &Experiment, range: Range<u64>, file: &Path, args: &StudyArgs) -> Outcome {
     let place = output::Place::file(file)?;
-    let mut rows: Vec<Row> = vec![];
+    let (mut rows, mut effort): (Vec<Row>, _) = (vec![], tell::Effort::default());
     let count = range.end - range.start;
-    let made = make(
-        experiment,
-        range,
-        count,
-        args,
-        |row| {
-            rows.push(row);
-            Ok(())
-        },
-        false,
-    )?;
-    if !made.finished {
+    let made = make(experiment, range, count, args, &mut effort, |row, _| {
+        rows.extend(row);
+        Ok(())
+    });
+    if let Err(Failure::Interrupted(_)) = made {
         return Err(Failure::Interrupted(format!(
             "{} of {count} runs were made, and none is kept",
             rows.len()
         )));
     }
+    made?;
     rows.sort_by_key(|row| row.point.index);
     sweeps::write_rows(file, &mut RowTable::new(experiment.study()), rows.iter(), experiment.fingerprint())?;
     drop(place);
     Ok(())
 }
 
-/// How far the making of runs came.
-struct MadeRuns {
-    finished: bool,
-    wall: f64,
+/// Rows are on the disk after so many seconds at the latest.
+const UNWRITTEN: f64 = 2.0;
+
+/// Makes runs into a folder; `look` sees each row.
+fn keep(
+    experiment: &Experiment,
+    indices: impl Iterator<Item = u64> + Send,
+    count: u64,
+    study: &mut StudyFolder,
+    args: &StudyArgs,
+    effort: &mut tell::Effort,
+    mut look: impl FnMut(&Row),
+) -> Outcome {
+    let mut written = 0.0;
+    make(experiment, indices, count, args, effort, |row, time| {
+        if let Some(row) = row {
+            look(&row);
+            study.push(row)?;
+        }
+        if time > written + UNWRITTEN {
+            study.flush()?;
+            written = time;
+        }
+        Ok(())
+    })
 }
 
-/// Makes runs; `keep` gets each row.
+/// Makes runs; `take` gets each row, or none after some time in which no run ended, and for how long runs have been made, s.
 fn make(
     experiment: &Experiment,
     indices: impl Iterator<Item = u64> + Send,
     count: u64,
     args: &StudyArgs,
-    mut keep: impl FnMut(Row) -> Result<(), Failure>,
-    counts_failures: bool,
-) -> Result<MadeRuns, Failure> {
+    effort: &mut tell::Effort,
+    mut take: impl FnMut(Option<Row>, f64) -> Outcome,
+) -> Outcome {
+    if count == 0 {
+        return Ok(());
+    }
     let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let threads = args.threads.map_or_else(cores, usize::from);
     let what = format!("{} of {}", counted(count, "run"), experiment.study().title);
@@ -344,18 +378,21 @@ fn make(
     let (began, mut made, mut unmet) = (Instant::now(), 0, 0_u64);
     let clock = || began.elapsed().as_secs_f64();
     run_all(experiment, indices, threads, &clock, |event| {
-        if let Progressed::Ended(row) = event {
+        let row = if let Progressed::Ended(row) = event { Some(row) } else { None };
+        if let Some(row) = &row {
             made += 1;
             unmet += u64::from(!row.met);
-            progress.at(made);
-            if counts_failures && unmet > 0 {
-                progress.says(&format!("{what}, {unmet} unmet"));
+            if unmet > 0 {
+                progress.says(&what, &format!("{unmet} unmet"));
             }
-            keep(row)?;
+            progress.at(made);
         }
+        take(row, clock())?;
         Ok::<bool, Failure>(!interrupt::asked())
     })?;
-    Ok(MadeRuns { finished: made == count, wall: clock() })
+    effort.runs += made;
+    effort.wall += clock();
+    if made == count { Ok(()) } else { Err(Failure::Interrupted(String::new())) }
 }
 
 /// Panics of runs are rows of the table, and not printed besides.

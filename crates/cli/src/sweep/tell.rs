@@ -15,6 +15,8 @@ use vocabulary::{Word, counted};
 const FIRST: u64 = 8;
 /// Cells that are printed.
 const MOST_CELLS: usize = 40;
+/// Cells that a report has.
+const MOST_REPORTED: usize = 100;
 /// Runs that are named.
 const MOST_WORST: usize = 3;
 
@@ -109,7 +111,7 @@ fn cells(experiment: &Experiment, cells: &[CellSummary]) -> ReportTable {
     let keys = keys(experiment);
     let parameters = &experiment.study().parameters;
     let head = keys.iter().map(|k| parameters[*k].key.clone());
-    let head = head.chain(["runs", "met", "", "contacts"].map(str::to_owned));
+    let head = head.chain(["runs", "met", "95 %", "contacts"].map(str::to_owned));
     let head = head.chain(SHOWN.iter().map(|(_, title, _)| (*title).to_owned())).collect();
     let row = |cell: &CellSummary| {
         let values =
@@ -158,8 +160,17 @@ pub(super) fn worst_line(row: &Row) -> String {
 /// The tables of a report.
 pub(super) fn tables(experiment: &Experiment, summary: &Summary) -> Vec<ReportTable> {
     let mut tables = vec![];
-    let first = &summary.cells[..summary.cells.len().min(500)];
-    tables.push(cells(experiment, first));
+    let first = &summary.cells[..summary.cells.len().min(MOST_REPORTED)];
+    let mut table = cells(experiment, first);
+    if first.len() < summary.cells.len() {
+        let _ = write!(
+            table.caption,
+            "; the first {} of {}, all are in summary.csv",
+            first.len(),
+            summary.cells.len()
+        );
+    }
+    tables.push(table);
     if !summary.by_failure.is_empty() {
         let rows =
             summary.by_failure.iter().map(|(key, count)| vec![key.clone(), count.to_string()]).collect();
@@ -212,12 +223,21 @@ pub(super) fn csv(experiment: &Experiment, summary: &Summary) -> String {
     text
 }
 
+/// What was made just now.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Effort {
+    /// Runs.
+    pub(super) runs: u64,
+    /// How long they took together, s of wall time.
+    pub(super) wall: f64,
+}
+
 /// The result.
 pub(super) fn study(
     experiment: &Experiment,
     summary: &Summary,
     folder: &Path,
-    wall: Option<f64>,
+    effort: &Effort,
     args: &ShownArgs,
 ) {
     if args.json {
@@ -234,7 +254,7 @@ pub(super) fn study(
             .collect();
         json(&json!({
             "folder": folder.display().to_string(), "fingerprint": experiment.fingerprint(), "summary": summary,
-            "worst": worst, "wall_seconds": wall,
+            "worst": worst, "made": effort.runs, "wall_seconds": effort.wall,
         }));
         return;
     }
@@ -266,8 +286,15 @@ pub(super) fn study(
     for row in summary.worst.iter().filter(|row| !row.met).take(MOST_WORST) {
         say(&format!("\n{}\n    {}", worst_line(row), again(experiment, row)));
     }
-    let speed = wall.filter(|wall| *wall > 0.0).map_or_else(String::new, |wall| {
-        format!(", made in {wall:.1} s ({:.0} runs a second)", summary.runs as f64 / wall)
-    });
+    let Effort { runs, wall } = *effort;
+    let speed = if runs == 0 {
+        String::new()
+    } else {
+        format!(
+            "; {} made in {wall:.1} s, {:.0} a second",
+            counted(runs, "run"),
+            runs as f64 / wall.max(1e-9)
+        )
+    };
     say(&format!("\n{}: rows in runs.parquet, report.html{speed}", folder.display()));
 }

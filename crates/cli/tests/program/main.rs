@@ -18,3 +18,4 @@ mod replay;
 mod runs;
 #[cfg(unix)]
 mod signals;
+mod sweeps;

@@ -179,7 +179,11 @@ fn study(text: &str, path: &Path, reporter: &mut Reporter) -> Option<Study> {
         sampling: value(keys.sampling)?,
         set: value(keys.set)?,
         parameters: vary.iter().map(|varied| varied.parameter.clone()).chain(value(keys.table)?).collect(),
-        scatter: Scatter { position: value(scatter.position)?, heading: value(scatter.heading)? },
+        // Both are left out with their table.
+        scatter: Scatter {
+            position: value(scatter.position).unwrap_or_default(),
+            heading: value(scatter.heading).unwrap_or_default(),
+        },
         limit: keys.limit.map(|found| found.value),
     };
     for fault in study.faults() {
@@ -267,6 +271,12 @@ mod tests {
         assert_eq!(keys, ["law.k", "law.beta", "vehicle.kind", "observer.epsilon"]);
         assert!((study.scatter.heading - 20_f64.to_radians()).abs() < 1e-12);
         assert_eq!(read(&study.to_toml()).expect("its own text"), study);
+    }
+
+    #[test]
+    fn everything_but_the_scene_may_be_left_out() {
+        let study = read("schema = 1\nscene = \"circle-three\"\n").expect("a study");
+        assert_eq!(study, Study::of_scene("circle-three", ""));
     }
 
     #[test]
