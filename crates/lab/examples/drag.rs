@@ -1,9 +1,6 @@
 //! What a dragged value costs the lab before it shows what becomes of it: `drag SCENE DRAGS`, both optional. SCENE is a scene that
-//! ships, or `map`: seven in a V among 100 obstacles. Where a lead robot has a goal that is dragged, otherwise a set point. Prints
-//! times of the work in the window, of what the run makes of it, and of the next sample, which plans again.
-
-#[path = "../../simulation/tests/trial_scene/mod.rs"]
-mod trial_scene;
+//! ships or a file. Where a lead robot has a goal that is dragged, otherwise a set point. Prints times of the work in the window, of
+//! what the run makes of it, and of the next sample, which plans again.
 
 use lab::action::Action;
 use lab::app_state::AppState;
@@ -14,8 +11,6 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// The map of `SCENE` `map`, and obstacles on it.
-const MAP: (u64, usize) = (3, 100);
 /// How long the run has gone on before the first drag, s.
 const BEGINS: f64 = 5.0;
 
@@ -23,9 +18,9 @@ fn main() -> Result<(), String> {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let name = words.first().map_or("figure-eight-seven", String::as_str);
     let drags: usize = words.get(1).and_then(|word| word.parse().ok()).unwrap_or(200);
-    let text = match name {
-        "map" => trial_scene::trial_scene(MAP.0, MAP.1, "unicycle"),
-        name => scene::shipped(name).ok_or("no such scene")?.text.to_owned(),
+    let text = match scene::shipped(name) {
+        Some(shipped) => shipped.text.to_owned(),
+        None => std::fs::read_to_string(name).map_err(|error| format!("{name}: {error}"))?,
     };
     let mut app_state = AppState::new();
     app_state.open(text, None, Path::new("scene.toml"))?;
