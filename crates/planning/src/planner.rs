@@ -44,6 +44,7 @@ pub fn plan(request: &PlanRequest<'_>, stop: &mut dyn FnMut(usize) -> bool) -> R
     let Some(way) = outcome.way else {
         let mut found = why_not(request, outcome.ended, stop);
         found.expansions += outcome.expansions;
+        found.record = outcome.record;
         return Err(no_way(found));
     };
     let (legs, changed) =
@@ -93,7 +94,7 @@ pub struct TourError {
 }
 
 /// What is wrong with the start or the goal, whatever lies between.
-fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayReason> {
+pub(crate) fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayReason> {
     let PlanRequest { map, model, mission, limits, .. } = request;
     let (start, goal) = (mission.start, mission.goal);
     if map.ground().distance([start.pose.x, start.pose.y]) > 0.0 {
