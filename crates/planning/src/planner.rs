@@ -37,7 +37,8 @@ pub fn plan(request: &PlanRequest<'_>, stop: &mut dyn FnMut(usize) -> bool) -> R
     let no_way = |no_way: NoWay| PlanError::NoWay(Box::new(no_way));
     let trailing = Trailing::new(request.model, &request.limits);
     if let Some(reason) = at_the_ends(request, &trailing) {
-        let starts = matches!(reason, NoWayReason::StartBlocked { robot, .. } if robot > 0);
+        let starts =
+            request.effort.explains && matches!(reason, NoWayReason::StartBlocked { robot, .. } if robot > 0);
         return Err(no_way(if starts { with_offer(request, reason, stop) } else { NoWay::because(reason) }));
     }
     let outcome = search(request, &trailing, stop);

@@ -121,8 +121,15 @@ pub(crate) fn goals(
         let model = formation.model(&vehicles).map_err(|error| invalid(lead, &error))?;
         let limits = formation.limits(&vehicles, &wish.travel);
         let filtered = formation.robots.iter().any(|robot| rooms[*robot] > 0.0);
-        let task =
-            PlanTask { model: &model, limits, standing: &standing, moving: &moving, filtered, records };
+        let task = PlanTask {
+            model: &model,
+            limits,
+            standing: &standing,
+            moving: &moving,
+            filtered,
+            records,
+            explains: true,
+        };
         let departure = Departure { start: PlanStart::at(scene.robots[lead].pose), held: None, time: 0.0 };
         let parts = wish.parts(&task, &departure, 0, wish.clearance(&rooms, &formation.robots)).map_err(
             |(goal, error)| {

@@ -70,6 +70,7 @@ pub(super) enum Phase {
 }
 
 /// A formation and what is known of its surroundings: what a plan is made of.
+#[derive(Clone, Copy)]
 pub(super) struct PlanTask<'a> {
     pub(super) model: &'a FormationModel,
     pub(super) limits: TravelLimits,
@@ -79,6 +80,8 @@ pub(super) struct PlanTask<'a> {
     pub(super) filtered: bool,
     /// Whether it is recorded what searches look at.
     pub(super) records: bool,
+    /// Whether somebody wants to know why there is no way.
+    pub(super) explains: bool,
 }
 
 /// Where and how a formation is when it begins to plan.
@@ -116,7 +119,8 @@ impl GoalWish {
             return Ok(near);
         }
         let lasts = |parts: &[PlannedPart]| parts.iter().map(|part| part.plan.duration()).sum::<f64>();
-        let Ok(far) = self.parts_off(task, departure, next, clearance + EASE) else { return Ok(near) };
+        let silent = PlanTask { explains: false, ..*task };
+        let Ok(far) = self.parts_off(&silent, departure, next, clearance + EASE) else { return Ok(near) };
         let is_long = lasts(&far) > LONGER * lasts(&near);
         let (mut chosen, aside) = if is_long { (near, far) } else { (far, near) };
         for (part, aside) in chosen.iter_mut().zip(&aside) {
@@ -144,7 +148,7 @@ impl GoalWish {
                 held: held.as_deref(),
                 ..PlanRequest::new(&map, task.model, task.limits, mission)
             };
-            request.effort.records = task.records;
+            (request.effort.records, request.effort.explains) = (task.records, task.explains);
             let is_last = number + 1 == self.goals.len();
             let schedule = Schedule { begins: time, stays: if is_last { f64::INFINITY } else { self.pause } };
             let plan = in_shape(&request, &things, schedule).map_err(|error| (number, error))?;
@@ -179,6 +183,9 @@ impl GoalWish {
     }
 }
 
+/// Part of the effort that goes into a plan that ends in the shape.
+const SHAPED: usize = 3;
+
 /// The plan that ends in the shape where the goal leaves that open and there is one.
 fn in_shape(
     request: &PlanRequest<'_>,
@@ -194,6 +201,7 @@ fn in_shape(
         PlanRequest { mission: Mission { goal: goal.at_level(0), ..request.mission }, ..*request };
     // Where there is none, another is looked for, not a reason.
     shaped.effort.explains = false;
+    shaped.effort.expansions /= SHAPED;
     match asked(&shaped) {
         Ok(plan) => Ok(plan),
         Err(error) => {

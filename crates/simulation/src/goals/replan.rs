@@ -316,7 +316,8 @@ fn plan_again(
     let limits = formation.limits(&vehicles, &navigator.wish.travel);
     let filtered = formation.robots.iter().any(|robot| run.goals.rooms[*robot] > 0.0);
     let (standing, moving) = (&found.standing, &found.moving);
-    let task = PlanTask { model: &model, limits, standing, moving, filtered, records: false };
+    let task =
+        PlanTask { model: &model, limits, standing, moving, filtered, records: false, explains: false };
     let departure = departure(run, navigator, formation, &model, &limits, time);
     let wish = navigator.wish.clone();
     let clearance = wish.clearance(&run.goals.rooms, &formation.robots);
