@@ -140,6 +140,8 @@ class Lab:
 
 
 AWAY = (1180, 560)
+# The upper edge of the view, when the arrangement is the first one.
+VIEW_TOP = 42
 # The tab of the panel Safety, and the box in it that switches filters, when the arrangement is the first one.
 SAFETY, FILTER = (1205, 54), (974, 112)
 # As no window manager does it.
@@ -257,11 +259,12 @@ class Test:
         row = lambda y: len({look.at(x, y) for x in range(left + 350, left + 500)}) > 3
         return left, edge(500, -1, row), right, edge(500, 1, row) + 1
 
-    def pixel(self, box, x, y):
-        """Where a place on the ground is seen."""
+    def pixel(self, box, x, y, view=None):
+        """Where a place on the ground is seen, from eye to target with a field of view."""
+        eye, target, field = view or (EYE, TARGET, FIELD)
         take = lambda a, b: tuple(p - q for p, q in zip(a, b))
         dot = lambda a, b: sum(p * q for p, q in zip(a, b))
-        forward = take(TARGET, EYE)
+        forward = take(target, eye)
         forward = tuple(p / math.hypot(*forward) for p in forward)
         flat = math.hypot(*forward[:2])
         right = (forward[1] / flat, -forward[0] / flat, 0.0)
@@ -270,9 +273,9 @@ class Test:
             right[2] * forward[0] - right[0] * forward[2],
             right[0] * forward[1] - right[1] * forward[0],
         )
-        way = take((x, y, 0.0), EYE)
+        way = take((x, y, 0.0), eye)
         left, top, end, bottom = box
-        unit = 0.5 * (bottom - top) / math.tan(0.5 * FIELD) / dot(way, forward)
+        unit = 0.5 * (bottom - top) / math.tan(0.5 * field) / dot(way, forward)
         return (left + end) / 2 + unit * dot(way, right), (top + bottom) / 2 - unit * dot(way, up)
 
     def set_point_at(self, box, distance, degrees):
@@ -575,6 +578,57 @@ class Test:
         check(code == 0, f"exit code {code}: {lab.err.read_text()}")
         return "off, and on again"
 
+    def drags_goal(self):
+        """A goal, while nothing moves: the way on the ground leads to where it is put, at once."""
+        scene = self.folder / "maze-three.toml"
+        shutil.copy(SCENES / "maze-three.toml", scene)
+        lab = Lab(self, scene.name, "--paused")
+        lab.key("Escape")
+        lab.still()
+        # All of the maze, from above.
+        lab.screen.xdotool("mousemove", 600, 400, "click", "--repeat", 7, "--delay", 80, 5)
+        lab.screen.drag([(420, 480), (420, 500), (420, 550), (420, 590)], lambda: None)
+        lab.screen.move(*AWAY)
+        before = lab.still()
+        self.see("goal")
+        lab.key("p")
+        name = lab.hears(r"^log .*Written: (.*\.png)", 60).group(1)
+        numbers = [float(x) for x in texts(self.folder / name)["View"].partition(":")[2].split(",")]
+        view = numbers[:3], numbers[3:6], math.radians(numbers[6])
+        left, _, right, bottom = self.view()
+        place = lambda x, y: tuple(map(round, self.pixel((left, VIEW_TOP, right, bottom), x, y, view)))
+        # The last stretch of the way there was, and that of the way there is to be.
+        around = lambda x, y: (x - 10, y - 8, x + 10, y + 8)
+        old, new = around(*place(17.7, -1.7)), around(*place(16.6, -5.2))
+        (x0, y0), (x1, y1) = place(20, 0), place(18, -6)
+        path = [(round(x0 + k / 8 * (x1 - x0)), round(y0 + k / 8 * (y1 - y0))) for k in range(9)]
+
+        def until():
+            lab.hears(r"^log .*Goal of robot-1")
+            lab.still()
+            self.see("goal-in-the-drag")
+
+        lab.screen.drag(path, until)
+        lab.screen.move(*AWAY)
+        after = lab.still()
+        self.see("goal-after-the-drag")
+        goal = lambda text: tomllib.loads(text)["groups"][0]["path"]["pose"]
+        now = goal(wait("unsaved work", self.kept, 10))
+        # From so far above a pixel is a decimetre.
+        there = math.dist(now[:2], (18.0, -6.0)) < 0.25 and now[2] == 0.0
+        check(there, f"the goal is at {now}")
+        for what, box in (("the old way is still there", old), ("there is no way to the new place", new)):
+            moved = after.differs(before, box)
+            check(moved > 0.08, f"{what}: {100 * moved:.1f} % of the pixels of {box} are others")
+        lab.key("ctrl+s")
+        lab.hears(r"^log .*Saved: .*maze-three.toml")
+        check(goal(scene.read_text()) == now, "the file has not got it")
+        lab.close()
+        code = lab.ended()
+        check(code == 0, f"exit code {code}: {lab.err.read_text()}")
+        told = re.search(r"^from a change to its prediction: .*$", lab.out.read_text(), re.M)
+        return told.group(0) if told else "there"
+
     def shows_faults(self):
         (self.folder / "broken.toml").write_text(self.shipped.replace("speed = 1.0", "sped = 1.0", 1))
         lab = Lab(self, "broken.toml", drawn=(244, 42, 960, 600), colours=20)
@@ -673,6 +727,7 @@ def main():
         test.step("Typing faster than the window draws", test.types)
         test.step("Closing in the middle of a film", test.closes_in_a_film)
         test.step("Switching a safety filter", test.keeps_apart)
+        test.step("Dragging a goal", test.drags_goal)
         test.step("Opening a broken scene", test.shows_faults)
         test.step("Ctrl C in the terminal", test.is_interrupted)
         test.step("Another program destroys the window", test.is_destroyed)

@@ -17,7 +17,7 @@ pub(crate) struct FrameTimings {
     between: Vec<f32>,
     last: Option<Instant>,
     predictions: Vec<f32>,
-    /// When a set point was moved whose prediction is still pending.
+    /// When a set point or goal was moved whose prediction is still pending.
     asked: Option<Instant>,
     answered: Vec<f32>,
     pictures: u64,
@@ -49,7 +49,10 @@ impl FrameTimings {
     }
 
     pub(crate) fn asked(&mut self, action: &Action) {
-        if matches!(action, Action::SetPoint { .. } | Action::Tune { .. } | Action::Shape { .. }) {
+        if matches!(
+            action,
+            Action::SetPoint { .. } | Action::Goal { .. } | Action::Tune { .. } | Action::Shape { .. }
+        ) {
             self.asked.get_or_insert_with(Instant::now);
         }
     }

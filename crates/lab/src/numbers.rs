@@ -3,7 +3,8 @@
 /// A number as TOML, to five significant digits, with a point.
 pub fn toml_number(value: f64) -> String {
     let short = format!("{value:.4e}").parse::<f64>().unwrap_or(value);
-    let plain = short.to_string();
+    // −0 is written as 0.
+    let plain = (short + 0.0).to_string();
     if plain.contains(['.', 'e', 'n']) { plain } else { format!("{plain}.0") }
 }
 
@@ -34,8 +35,14 @@ mod tests {
 
     #[test]
     fn numbers_are_short() {
-        let cases =
-            [(5.0, "5.0"), (0.1 + 0.2, "0.3"), (1.234_567, "1.2346"), (0.001, "0.001"), (-2.5, "-2.5")];
+        let cases = [
+            (5.0, "5.0"),
+            (0.1 + 0.2, "0.3"),
+            (1.234_567, "1.2346"),
+            (0.001, "0.001"),
+            (-2.5, "-2.5"),
+            (-0.0, "0.0"),
+        ];
         for (value, text) in cases {
             assert_eq!(toml_number(value), text);
         }

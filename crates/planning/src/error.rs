@@ -21,6 +21,16 @@ pub enum InputError {
         /// What it may be, in words.
         range: &'static str,
     },
+    /// A goal for which the grid of the search would be too large.
+    #[error(
+        "the goal is {away:.0} m away, but may be {most:.0} m away at most: make a tour of goals that are nearer to each other"
+    )]
+    TooFar {
+        /// From the start, m.
+        away: f64,
+        /// m.
+        most: f64,
+    },
     /// Too few corners, or all on one line.
     #[error("{what} has {corners} corners and no area: give at least three corners that are not on one line")]
     NoArea {

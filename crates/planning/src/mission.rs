@@ -77,6 +77,8 @@ pub struct SearchEffort {
     pub smooths: bool,
     /// Whether it is recorded what the search looked at.
     pub records: bool,
+    /// Whether it is looked for a reason and an offer where there is no way.
+    pub explains: bool,
 }
 
 /// Everything that a plan is asked of.
@@ -168,6 +170,7 @@ impl Default for SearchEffort {
             headings: 60,
             smooths: true,
             records: false,
+            explains: true,
         }
     }
 }
@@ -198,8 +201,9 @@ impl Mission {
             checked(value, true, || what.into(), "finite")?;
         }
         let away = math::hypot(goal.position[0] - start.pose.x, goal.position[1] - start.pose.y);
-        let range = "at most 2000 m: set goals between";
-        checked(away, away <= FARTHEST, || "the distance to the goal in m".into(), range)?;
+        if away > FARTHEST {
+            return Err(InputError::TooFar { away, most: FARTHEST });
+        }
         let fits = start.curvature.abs() <= limits.curvature;
         checked(start.curvature, fits, || "the start's curvature".into(), "within the vehicle's, 1/m")?;
         let fits = (0.0..=limits.speed).contains(&start.speed);

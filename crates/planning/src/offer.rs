@@ -6,10 +6,14 @@ use crate::gap::Gap;
 use crate::leg::Leg;
 use crate::map::{Boundary, Map};
 use crate::mission::{Mission, PlanRequest, SearchEffort};
+use crate::planner::at_the_ends;
 use crate::search::{Ended, search};
+use crate::search_record::SearchRecord;
 use crate::trailing::{Blocked, STEP, Sweep, Trailing};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 use thiserror::Error;
+use vocabulary::wrap;
 
 /// No way, and why.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -23,6 +27,8 @@ pub struct NoWay {
     pub gap: Option<Gap>,
     /// Steps that were swept.
     pub expansions: usize,
+    /// What the search for the way that was asked for looked at, if its effort asks for it.
+    pub record: SearchRecord,
 }
 
 /// Why there is no way.
@@ -51,9 +57,30 @@ pub enum NoWayReason {
     /// Not even the lead gets there.
     #[error("no way for the lead alone: nothing as wide as its body gets there")]
     LeadUnreachable,
-    /// Everybody gets there, at another heading only.
-    #[error("no way at the heading asked for: there is one to the same place at another")]
-    HeadingUnreachable,
+    /// The goal is reached, at another heading only.
+    #[error(
+        "the goal can be reached, but not with heading {} deg: there is no room to turn; there is a way with heading {} deg",
+        degrees(*.heading),
+        degrees(*.other)
+    )]
+    HeadingUnreachable {
+        /// That is asked for, rad.
+        heading: f64,
+        /// That a way ends with, rad.
+        other: f64,
+    },
+    /// The goal is reached from another heading at the start only.
+    #[error(
+        "there is no room to turn from heading {} deg at the start: there is a way from heading {} deg",
+        degrees(*.heading),
+        degrees(*.other)
+    )]
+    StartHeading {
+        /// That of the start, rad.
+        heading: f64,
+        /// From which there is a way, rad.
+        other: f64,
+    },
     /// The formation does not get there.
     #[error("no way for {}{}", vocabulary::counted(.robots, "robot"), unproven(*.proven))]
     TooWide {
@@ -80,22 +107,27 @@ pub struct Offer {
     pub legs: Vec<Leg>,
 }
 
+/// Whole degrees.
+fn degrees(heading: f64) -> f64 {
+    // −0 is written as 0.
+    wrap(heading).to_degrees().round() + 0.0
+}
+
 fn unproven(proven: bool) -> &'static str {
     if proven { "" } else { " was found: the search used up its effort" }
 }
 
 impl NoWay {
     pub(crate) fn because(reason: NoWayReason) -> Self {
-        Self { reason, offer: None, gap: None, expansions: 0 }
+        Self { reason, offer: None, gap: None, expansions: 0, record: SearchRecord::default() }
     }
 
     fn shown_gap(&self) -> String {
         let shown = |gap: &Gap| {
             let [a, b] = gap.between;
-            format!(
-                "; the gap of {:.2} m between {a} and {b} at ({:.1}, {:.1})",
-                gap.width, gap.at[0], gap.at[1]
-            )
+            // −0 is written as 0.
+            let [x, y] = gap.at.map(|value| (10.0 * value).round() / 10.0 + 0.0);
+            format!("; the gap of {:.2} m between {a} and {b} at ({x:.1}, {y:.1})", gap.width)
         };
         self.gap.as_ref().map(shown).unwrap_or_default()
     }
@@ -118,7 +150,7 @@ impl fmt::Display for Offer {
 /// A share of the effort is left for each search for an offer.
 const EFFORT: usize = 3;
 
-/// Why nobody found a way, with an offer.
+/// Why nobody found a way, with an offer if the effort asks for an explanation.
 pub(crate) fn why_not(request: &PlanRequest<'_>, ended: Ended, stop: &mut dyn FnMut(usize) -> bool) -> NoWay {
     let robots = request.model.robots();
     let mut found = NoWay::because(match ended {
@@ -127,7 +159,7 @@ pub(crate) fn why_not(request: &PlanRequest<'_>, ended: Ended, stop: &mut dyn Fn
         Ended::Exhausted => NoWayReason::TooWide { robots, proven: true },
         Ended::OutOfEffort | Ended::Found => NoWayReason::TooWide { robots, proven: false },
     });
-    if found.reason == NoWayReason::Stopped {
+    if found.reason == NoWayReason::Stopped || !request.effort.explains {
         return found;
     }
     let (start, goal) = (request.mission.start.pose, request.mission.goal.position);
@@ -136,15 +168,31 @@ pub(crate) fn why_not(request: &PlanRequest<'_>, ended: Ended, stop: &mut dyn Fn
         found.gap = widest();
         return found;
     }
-    if request.mission.goal.heading.is_some() && at_any_heading(request, &mut found, stop) {
-        found.reason = NoWayReason::HeadingUnreachable;
+    if let Some(reason) = at_another_goal_heading(request, &mut found, stop) {
+        found.reason = reason;
         return found;
     }
     offer(request, &mut found, stop);
-    found.gap = match &found.offer {
-        Some(offer) => blocking_gap(request, offer).or_else(widest),
-        None => widest(),
-    };
+    if found.offer.is_none() {
+        // Not even the lead alone gets there, though its body would: it has no room to turn.
+        let lead = alone(request.model);
+        let request = &of_smaller(request, &lead, request.mission.start.level);
+        let turns = at_another_goal_heading(request, &mut found, stop);
+        if let Some(reason) = turns.or_else(|| from_another_heading(request, &mut found, stop)) {
+            found.reason = reason;
+            return found;
+        }
+        found.gap = widest();
+        return found;
+    }
+    found.gap = found.offer.as_ref().and_then(|offer| blocking_gap(request, offer));
+    if found.gap.is_none() {
+        // Nothing is too narrow for it, so it cannot turn.
+        match from_another_heading(request, &mut found, stop) {
+            Some(reason) => found.reason = reason,
+            None => found.gap = widest(),
+        }
+    }
     found
 }
 
@@ -160,17 +208,80 @@ pub(crate) fn with_offer(
 }
 
 fn less(effort: &SearchEffort) -> SearchEffort {
-    SearchEffort { expansions: (effort.expansions / EFFORT).max(1), improvement: 0, ..*effort }
+    SearchEffort {
+        expansions: (effort.expansions / EFFORT).max(1),
+        improvement: 0,
+        records: false,
+        ..*effort
+    }
 }
 
-fn at_any_heading(request: &PlanRequest<'_>, found: &mut NoWay, stop: &mut dyn FnMut(usize) -> bool) -> bool {
+/// The reason if there is a way to the goal at another heading than that asked for.
+fn at_another_goal_heading(
+    request: &PlanRequest<'_>,
+    found: &mut NoWay,
+    stop: &mut dyn FnMut(usize) -> bool,
+) -> Option<NoWayReason> {
+    let heading = request.mission.goal.heading?;
     let mut easier = *request;
     easier.mission.goal.heading = None;
-    easier.effort = less(&request.effort);
-    let trailing = Trailing::new(easier.model, &easier.limits);
-    let outcome = search(&easier, &trailing, stop);
+    let legs = tried(&easier, found, stop)?;
+    let other = legs.last()?.pieces(STEP).last()?.end.heading;
+    Some(NoWayReason::HeadingUnreachable { heading, other })
+}
+
+/// The reason if there is a way from another heading at the start.
+fn from_another_heading(
+    request: &PlanRequest<'_>,
+    found: &mut NoWay,
+    stop: &mut dyn FnMut(usize) -> bool,
+) -> Option<NoWayReason> {
+    let heading = request.mission.start.pose.heading;
+    for turn in TURNS {
+        let mut turned = PlanRequest { held: None, ..*request };
+        let start = &mut turned.mission.start;
+        start.pose.heading = wrap(heading + turn);
+        start.curvature = 0.0;
+        let other = start.pose.heading;
+        let trailing = Trailing::new(turned.model, &turned.limits);
+        if at_the_ends(&turned, &trailing).is_none() && tried(&turned, found, stop).is_some() {
+            return Some(NoWayReason::StartHeading { heading, other });
+        }
+    }
+    None
+}
+
+/// Headings at the start that are tried, against that which it has, rad.
+const TURNS: [f64; 3] = [PI, FRAC_PI_2, -FRAC_PI_2];
+
+/// A way with less effort.
+fn tried(
+    request: &PlanRequest<'_>,
+    found: &mut NoWay,
+    stop: &mut dyn FnMut(usize) -> bool,
+) -> Option<Vec<Leg>> {
+    let request = PlanRequest { effort: less(&request.effort), ..*request };
+    let trailing = Trailing::new(request.model, &request.limits);
+    let outcome = search(&request, &trailing, stop);
     found.expansions += outcome.expansions;
-    outcome.way.is_some()
+    outcome.way.map(|way| way.legs)
+}
+
+/// The lead of a formation without all that follow it.
+fn alone(model: &FormationModel) -> FormationModel {
+    let mut model = model.clone();
+    while let Some(smaller) = model.without_last() {
+        model = smaller;
+    }
+    model
+}
+
+/// The same for a smaller formation, which begins at a level that it has and ends at any.
+fn of_smaller<'a>(request: &PlanRequest<'a>, model: &'a FormationModel, level: f64) -> PlanRequest<'a> {
+    let mut smaller = PlanRequest { model, held: None, ..*request };
+    smaller.mission.start.level = level.min((model.levels() - 1) as f64);
+    smaller.mission.goal.level = None;
+    smaller
 }
 
 /// Finds the largest column that gets there, by halves: a formation gets wherever a larger one does.
@@ -183,26 +294,17 @@ fn offer(request: &PlanRequest<'_>, found: &mut NoWay, stop: &mut dyn FnMut(usiz
     mission.start.level = (request.model.levels() - 1) as f64;
     mission.goal.level = None;
     let is_asked = mission == request.mission;
-    let mut tried = |model: &FormationModel| {
-        let mission = Mission {
-            start: crate::mission::PlanStart {
-                level: mission.start.level.min((model.levels() - 1) as f64),
-                ..mission.start
-            },
-            ..mission
-        };
-        let request = PlanRequest { model, mission, effort: less(&request.effort), held: None, ..*request };
-        let trailing = Trailing::new(model, &request.limits);
-        let outcome = search(&request, &trailing, stop);
-        found.expansions += outcome.expansions;
-        outcome.way.map(|way| Offer { robots: model.robots(), model: model.clone(), mission, legs: way.legs })
+    let mut offered = |model: &FormationModel| {
+        let smaller = of_smaller(request, model, mission.start.level);
+        let legs = tried(&smaller, found, stop)?;
+        Some(Offer { robots: model.robots(), model: model.clone(), mission: smaller.mission, legs })
     };
     // models[k] leaves k robots out: the least k with a way.
     let (mut fails, mut works) = (if is_asked { 0 } else { -1 }, models.len() as i64);
     let mut best = None;
     while works - fails > 1 {
         let middle = if best.is_none() { works - 1 } else { i64::midpoint(fails, works) };
-        match tried(&models[middle as usize]) {
+        match offered(&models[middle as usize]) {
             Some(offer) => (best, works) = (Some(offer), middle),
             None if best.is_none() => break,
             None => fails = middle,

@@ -37,13 +37,15 @@ pub fn plan(request: &PlanRequest<'_>, stop: &mut dyn FnMut(usize) -> bool) -> R
     let no_way = |no_way: NoWay| PlanError::NoWay(Box::new(no_way));
     let trailing = Trailing::new(request.model, &request.limits);
     if let Some(reason) = at_the_ends(request, &trailing) {
-        let starts = matches!(reason, NoWayReason::StartBlocked { robot, .. } if robot > 0);
+        let starts =
+            request.effort.explains && matches!(reason, NoWayReason::StartBlocked { robot, .. } if robot > 0);
         return Err(no_way(if starts { with_offer(request, reason, stop) } else { NoWay::because(reason) }));
     }
     let outcome = search(request, &trailing, stop);
     let Some(way) = outcome.way else {
         let mut found = why_not(request, outcome.ended, stop);
         found.expansions += outcome.expansions;
+        found.record = outcome.record;
         return Err(no_way(found));
     };
     let (legs, changed) =
@@ -93,7 +95,7 @@ pub struct TourError {
 }
 
 /// What is wrong with the start or the goal, whatever lies between.
-fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayReason> {
+pub(crate) fn at_the_ends(request: &PlanRequest<'_>, trailing: &Trailing) -> Option<NoWayReason> {
     let PlanRequest { map, model, mission, limits, .. } = request;
     let (start, goal) = (mission.start, mission.goal);
     if map.ground().distance([start.pose.x, start.pose.y]) > 0.0 {

@@ -25,7 +25,7 @@ impl SearchRecord {
     }
 
     /// Adds what another search looked at.
-    pub(crate) fn extend(&mut self, other: &Self) {
+    pub fn extend(&mut self, other: &Self) {
         self.tried.extend(&other.tried);
         self.rejected.extend(other.rejected.iter().cloned());
     }

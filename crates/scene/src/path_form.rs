@@ -109,25 +109,46 @@ keys! {
     }
 }
 
-keys! {
+/// Keys of a path to goals: its own, and how it goes there.
+macro_rules! goal_keys {
+    ($(#[doc = $about:literal])* struct $name:ident { $($own:tt)* }) => {
+        keys! {
+            $(#[doc = $about])*
+            struct $name {
+                $($own)*
+                /// Speed of the lead where nothing slows it, m/s.
+                speed: f64 = TRAVEL_SPEED, or(0.8);
+                /// How it gains speed and brakes, m/s².
+                acceleration: f64 = TRAVEL_ACCELERATION, or(0.3);
+                /// How far all robots stay off what stands there, m; what their safety filters keep free if left out, at least 0.25.
+                clearance: f64 = CLEARANCE, optional;
+                /// Of several formations those of higher priority plan first, and the others yield to them.
+                priority: u32 = integer::<u32>(0, 1000), or(0);
+                /// How long it waits for a way that is not there, s.
+                patience: f64 = PATIENCE, or(30.0);
+            }
+        }
+
+        impl $name {
+            fn travel(&self) -> Option<Travel> {
+                let (speed, acceleration) = (self.speed.as_ref()?.value, self.acceleration.as_ref()?.value);
+                let (priority, patience) = (self.priority.as_ref()?.value, self.patience.as_ref()?.value);
+                let clearance = self.clearance.as_ref().map(|found| found.value);
+                Some(Travel { speed, acceleration, clearance, priority, patience })
+            }
+        }
+    };
+}
+
+goal_keys! {
     /// To a goal, by a way that is planned for the whole formation; there it stays.
     struct GoalKeys {
         /// Where to: [x, y] in m, or [x, y, heading].
         pose: Goal = GoalForm, required;
-        /// Speed of the lead where nothing slows it, m/s.
-        speed: f64 = TRAVEL_SPEED, or(0.8);
-        /// How it gains speed and brakes, m/s².
-        acceleration: f64 = TRAVEL_ACCELERATION, or(0.3);
-        /// How far all robots stay off what stands there, m; what their safety filters keep free if left out, at least 0.25.
-        clearance: f64 = CLEARANCE, optional;
-        /// Of several formations those of higher priority plan first, and the others yield to them.
-        priority: u32 = integer::<u32>(0, 1000), or(0);
-        /// How long it waits for a way that is not there, s.
-        patience: f64 = PATIENCE, or(30.0);
     }
 }
 
-keys! {
+goal_keys! {
     /// To one goal after the other, by ways that are planned for the whole formation.
     struct TourKeys {
         /// Where to, one after the other: each [x, y] in m, or [x, y, heading].
@@ -136,16 +157,6 @@ keys! {
         pause: f64 = TIME, or(0.0);
         /// How often it goes through all of them.
         rounds: u32 = integer::<u32>(1, 1000), or(1);
-        /// Speed of the lead where nothing slows it, m/s.
-        speed: f64 = TRAVEL_SPEED, or(0.8);
-        /// How it gains speed and brakes, m/s².
-        acceleration: f64 = TRAVEL_ACCELERATION, or(0.3);
-        /// How far all robots stay off what stands there, m; what their safety filters keep free if left out, at least 0.25.
-        clearance: f64 = CLEARANCE, optional;
-        /// Of several formations those of higher priority plan first, and the others yield to them.
-        priority: u32 = integer::<u32>(0, 1000), or(0);
-        /// How long it waits for a way that is not there, s.
-        patience: f64 = PATIENCE, or(30.0);
     }
 }
 
@@ -295,30 +306,12 @@ fn from_table(keys: TableKeys, node: &Node, reporter: &mut Reporter) -> Option<P
 }
 
 fn goal(keys: GoalKeys, _: &Node, _: &mut Reporter) -> Option<Path> {
-    let (speed, acceleration) = (keys.speed?.value, keys.acceleration?.value);
-    let (priority, patience) = (keys.priority?.value, keys.patience?.value);
-    let travel = Travel {
-        speed,
-        acceleration,
-        clearance: keys.clearance.map(|found| found.value),
-        priority,
-        patience,
-    };
-    Some(Path::Goal { pose: keys.pose?.value, travel })
+    Some(Path::Goal { travel: keys.travel()?, pose: keys.pose?.value })
 }
 
 fn tour(keys: TourKeys, _: &Node, _: &mut Reporter) -> Option<Path> {
-    let (speed, acceleration) = (keys.speed?.value, keys.acceleration?.value);
-    let (priority, patience) = (keys.priority?.value, keys.patience?.value);
-    let travel = Travel {
-        speed,
-        acceleration,
-        clearance: keys.clearance.map(|found| found.value),
-        priority,
-        patience,
-    };
-    let (goals, pause) = (keys.goals?.value, keys.pause?.value);
-    Some(Path::Tour { goals, pause, rounds: keys.rounds?.value, travel })
+    let (travel, goals) = (keys.travel()?, keys.goals?.value);
+    Some(Path::Tour { goals, pause: keys.pause?.value, rounds: keys.rounds?.value, travel })
 }
 
 /// A lead robot's path.

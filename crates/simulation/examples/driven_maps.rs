@@ -1,6 +1,6 @@
 //! Plans over random maps, driven with law and safety filter: how many are found, how many arrive, how many touch.
-//! `cargo run --release --locked -p simulation --example driven_maps [MAPS] [unicycle|car] [OBSTACLES]`
-//! MAPS is a number of maps or a range of them, such as 14..15; one map alone prints its scene.
+//! `cargo run --release --locked -p simulation --example driven_maps [MAPS] [unicycle|car] [OBSTACLES] [scene]`
+//! MAPS is a number of maps or a range of them, such as 14..15; with `scene` their scenes are printed instead.
 
 #[path = "../tests/trial_scene/mod.rs"]
 mod trial_scene;
@@ -67,12 +67,15 @@ fn main() -> Result<(), String> {
     let vehicle = given.get(1).map_or("unicycle", |text| text);
     let counts: Vec<u64> =
         given.get(2).map_or(Ok(vec![20, 50, 100]), |text| number(text).map(|count| vec![count]))?;
+    if given.get(3).is_some_and(|word| word == "scene") {
+        for (seed, count) in (first..last).flat_map(|seed| counts.iter().map(move |count| (seed, *count))) {
+            println!("{}", trial_scene(seed, count as usize, vehicle));
+        }
+        return Ok(());
+    }
     for count in counts {
         let count = count as usize;
         let mut row = Row::default();
-        if first + 1 == last {
-            println!("{}", trial_scene(first, count, vehicle));
-        }
         for seed in first..last {
             drive(&mut row, seed, count, vehicle)?;
         }

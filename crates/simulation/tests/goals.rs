@@ -5,7 +5,7 @@ mod trial_scene;
 use scene::{Override, Scene};
 use simulation::{BuildError, Simulation, build};
 use trial_scene::trial_scene;
-use vocabulary::{Contact, EntityId, EventKind, EventRecord, StepRecord, math};
+use vocabulary::{Contact, EntityId, EventKind, EventRecord, StepRecord, TourGoal, math};
 
 fn scene(name: &str, sets: &[&str]) -> Scene {
     let text = scene::shipped(name).expect("a shipped scene").text;
@@ -81,6 +81,8 @@ fn who_yields_arrives_when_the_other_has_passed() {
 fn a_tour_stops_at_every_goal() {
     let records = run("warehouse-seven", &[]);
     assert!(!records.iter().any(|record| record.contacts.iter().any(Contact::of_robot)));
+    let arrived: Vec<_> = events(&records, EventKind::Arrive).iter().map(|(_, event)| event.goal).collect();
+    assert_eq!(arrived, [0, 1, 2].map(|goal| Some(TourGoal { goal, round: None })));
     for goal in [[26.0, 0.0], [26.0, 18.0], [0.0, 18.0]] {
         let rests = |record: &&StepRecord| {
             away(record, goal) < 0.3 && record.snapshot.robots[0].motion.speed.abs() < 1e-3
@@ -99,6 +101,19 @@ fn what_has_no_way_is_told_by_the_names_of_the_scene() {
     assert!(told.contains("between `wall-"), "{told}");
     let told = why_not("maze-three", &["props.wall-1.from=[0.5, -2]", "props.wall-1.to=[0.5, 12]"]);
     assert!(told.contains("`robot-1` starts too near to `wall-1`"), "{told}");
+}
+
+/// At a goal near a wall a formation heads for the wall, and has no room to turn: no gap is to blame.
+#[test]
+fn a_tour_with_a_heading_that_leads_nowhere_is_told_so() {
+    let goals = "groups.robot.path={ kind = \"tour\", goals = [[21.5, 0, 0], [0, 0]] }";
+    let told = why_not("maze-three", &[goals, "props.wall-3.from=[22.5, -12]", "props.wall-3.to=[22.5, 12]"]);
+    assert!(
+        told.contains("to goal 2: there is no room to turn from heading 0 deg at the start")
+            && told.contains("give goal 1 that heading, or another place")
+            && !told.contains("gap"),
+        "{told}"
+    );
 }
 
 /// A room with a wall across it that nobody knows of.
@@ -170,7 +185,8 @@ fn what_nobody_knew_of_is_driven_around() {
         let other_ways = events(&records, EventKind::Reroute);
         assert!(!other_ways.is_empty(), "{kind}");
         assert!(other_ways.iter().all(|(_, event)| matches!(event.obstacle, Some(EntityId::Prop(1 | 2)))));
-        assert_eq!(events(&records, EventKind::Arrive).len(), 1);
+        let arrived = events(&records, EventKind::Arrive);
+        assert_eq!(arrived.iter().map(|(_, event)| event.goal).collect::<Vec<_>>(), [None]);
         // Every new plan is told, the first at the start.
         let plans = records.iter().map(|record| record.plans.len()).sum::<usize>();
         assert_eq!(plans, 1 + other_ways.len());

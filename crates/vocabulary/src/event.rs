@@ -1,6 +1,7 @@
 //! What happens to a formation while it drives: robots change their leader, fail, join and part.
 
 use crate::{EntityId, FleetInfo, words};
+use std::fmt;
 
 words! {
     /// What happened to a robot, or should have.
@@ -66,6 +67,23 @@ words! {
     }
 }
 
+/// Which of the goals of a tour.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TourGoal {
+    /// Its number in a round, from 0.
+    pub goal: usize,
+    /// Number of the round, from 0; `None` where there is but one.
+    pub round: Option<usize>,
+}
+
+impl fmt::Display for TourGoal {
+    /// Both are counted from 1.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "goal {}", self.goal + 1)?;
+        self.round.map_or(Ok(()), |round| write!(f, " in round {}", round + 1))
+    }
+}
+
 /// An event of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct EventRecord {
@@ -81,6 +99,8 @@ pub struct EventRecord {
     pub obstacle: Option<EntityId>,
     /// What was measured, and the bound that it exceeds, m, rad or m/s; zero where a refusal is not about a number.
     pub measured: [f64; 2],
+    /// Where a robot is that arrives, on a tour.
+    pub goal: Option<TourGoal>,
     /// By which event of the scene, counted from 0 in its order; `None` where none asked for it at this moment.
     pub event: Option<usize>,
 }
@@ -112,7 +132,10 @@ impl EventRecord {
                 EventKind::Wait => format!("{robot} has lost its leader and waits"),
                 EventKind::Reroute => format!("{robot} takes another way{}", self.around(fleet)),
                 EventKind::Halt => format!("{robot} stops and looks for a way{}", self.around(fleet)),
-                EventKind::Arrive => format!("{robot} is at its goal"),
+                EventKind::Arrive => match self.goal {
+                    Some(goal) => format!("{robot} is at {goal}"),
+                    None => format!("{robot} is at its goal"),
+                },
                 EventKind::LawFault => format!("{robot} brakes: its law gives no command"),
                 EventKind::GiveUp => format!("{robot} has waited in vain and stays where it is"),
             };
@@ -175,6 +198,12 @@ mod tests {
         assert_eq!(done.words(&fleet), "bob follows ann");
         let refused = EventRecord { refusal: Refusal::Far, measured: [5.25, 4.1], ..done };
         assert_eq!(refused.words(&fleet), "bob cannot follow ann: it is 5.25 m away, more than 4.10 m");
+        let arrived = EventRecord::done(EventKind::Arrive, 0, None);
+        assert_eq!(arrived.words(&fleet), "ann is at its goal");
+        let goal = Some(TourGoal { goal: 1, round: None });
+        assert_eq!(EventRecord { goal, ..arrived }.words(&fleet), "ann is at goal 2");
+        let goal = Some(TourGoal { goal: 1, round: Some(2) });
+        assert_eq!(EventRecord { goal, ..arrived }.words(&fleet), "ann is at goal 2 in round 3");
         for (_, refusal, _) in Refusal::WORDS {
             let words = EventRecord { refusal: *refusal, ..done }.words(&fleet);
             assert!(!words.ends_with(": "), "{words}");

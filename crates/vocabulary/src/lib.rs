@@ -48,7 +48,7 @@ pub use camera_model::{CameraModel, Region};
 pub use command::Command;
 pub use contact::{Contact, EntityId};
 pub use edge::{Edge, Relative, SetPoint};
-pub use event::{EventKind, EventRecord, Refusal};
+pub use event::{EventKind, EventRecord, Refusal, TourGoal};
 pub use fleet::{Body, FleetInfo, Light, RobotInfo};
 pub use gravity::GRAVITY;
 pub use judging::Judging;

@@ -8,7 +8,7 @@ use std::sync::{
     Arc,
     atomic::{AtomicUsize, Ordering::Relaxed},
 };
-use vocabulary::{EntityId, Pose, StepRecord};
+use vocabulary::{EntityId, PlannedPath, Pose, StepRecord};
 use web_time::{Duration, Instant};
 
 /// Maximum number of points of a path.
@@ -37,6 +37,8 @@ pub struct Prediction {
     pub contact: Option<(f64, [EntityId; 2])>,
     /// First saturated command: time, s, and edge.
     pub limited: Option<(f64, usize)>,
+    /// Plans to goals that are made at its first sample.
+    pub plans: Vec<Arc<PlannedPath>>,
     /// Computing time, s.
     pub took: f64,
     /// Number of predictions requested before this one.
@@ -249,6 +251,9 @@ impl PredictionBuilder {
     }
 
     fn take(&mut self, k: u64, record: &StepRecord) {
+        if k == 0 {
+            self.out.plans.clone_from(&record.plans);
+        }
         self.limits(record);
         self.contacts(k, record);
         self.errors(k, record);
@@ -346,5 +351,30 @@ mod tests {
         assert_eq!(turns, pieces.samples);
         let [whole, pieces] = [whole, pieces].map(|under_way| Prediction { took: 0.0, ..under_way.finish() });
         assert_eq!(format!("{whole:?}"), format!("{pieces:?}"));
+    }
+
+    /// While a run is paused nothing but the prediction tells where the new plan leads.
+    #[test]
+    fn a_goal_that_has_moved_is_in_the_prediction() {
+        let text = scene::shipped("maze-three").expect("a shipped scene").text;
+        let read = |text: &str| scene::Scene::parse(text, "t.toml", &[]).expect("a scene").scene;
+        let mut run = Simulation::new(simulation::build(&read(text)).expect("a run"));
+        run.next_record().expect("a record");
+        let predicted = |run: &Simulation| {
+            let mut under_way = PredictionUnderWay::new(PredictionRequest {
+                branch: 0,
+                run: run.save(),
+                seconds: 0.05,
+                number: 0,
+            });
+            assert!(under_way.go_on(Duration::MAX));
+            under_way.finish().plans
+        };
+        assert_eq!(predicted(&run), []);
+        let moved = read(&text.replace("[20.0, 0.0, 0.0]", "[18.0, -6.0, 0.0]"));
+        run.apply_parameters(&simulation::build(&moved).expect("a run"));
+        let plans = predicted(&run);
+        let end = plans[0].points.last().expect("a point").poses[0];
+        assert!(plans.len() == 1 && vocabulary::math::hypot(end.x - 18.0, end.y + 6.0) < 0.1, "{end:?}");
     }
 }

@@ -53,6 +53,10 @@ pub fn annotations(app_state: &AppState, record: &StepRecord, pointer: &PointerS
         app_state.prediction.as_ref().filter(|f| present && f.branch == app_state.branch)
     {
         future(prediction, &colours, &fleet, &mut annotations);
+        // What the run has gone through is in its records.
+        if record.snapshot.time < prediction.span[0] {
+            annotations.plans.clone_from(&prediction.plans);
+        }
     }
     handles(app_state, &fleet, record, &colours, pointer, &mut annotations);
     if let Some((robot, to)) = pointer.connecting

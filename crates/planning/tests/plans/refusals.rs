@@ -81,7 +81,7 @@ fn input_that_makes_no_sense_is_refused() {
     );
     assert_eq!(
         ask(at(PlanGoal::to([8.0, 4008.0])), limits),
-        "the distance to the goal in m is 4000, but has to be at most 2000 m: set goals between"
+        "the goal is 4000 m away, but may be 2000 m away at most: make a tour of goals that are nearer to each other"
     );
     let reverses = TravelLimits { reverses: true, ..limits };
     assert_eq!(
@@ -152,8 +152,35 @@ fn a_heading_that_no_turning_circle_reaches_is_said_to_be_so() {
         goal: PlanGoal::at(Pose::new(39.4, 20.0, PI)),
     };
     let limits = TravelLimits { outer: 0.8, ..TravelLimits::default() };
-    let found = no_way(plan(&PlanRequest::new(&map, &model, limits, mission), &mut |_| false));
-    assert_eq!(found.reason, NoWayReason::HeadingUnreachable);
+    let request = PlanRequest::new(&map, &model, limits, mission);
+    let found = no_way(plan(&request, &mut |_| false));
+    let NoWayReason::HeadingUnreachable { heading, other } = found.reason else { panic!("{found}") };
+    assert!((heading, found.gap) == (PI, None) && other.abs() < 0.5 * PI, "{found}");
+    let told = found.to_string();
+    let right = "the goal can be reached, but not with heading 180 deg: there is no room to turn; there is a way with";
+    assert!(told.starts_with(right), "{told}");
+    // What is offered is there.
+    let other = Mission { goal: PlanGoal::at(Pose::new(39.4, 20.0, other)), ..mission };
+    assert!(plan(&PlanRequest { mission: other, ..request }, &mut |_| false).is_ok());
+}
+
+/// The way on from a goal at a wall, heading for it: the ground is wide, and there is no room to turn.
+#[test]
+fn a_heading_that_leads_nowhere_is_said_to_be_the_reason() {
+    let (map, limits) = (empty(40.0), TravelLimits { outer: 0.8, ..TravelLimits::default() });
+    let model = FormationModel::alone(BodyShape::Disc { radius: 0.2 }).expect("a robot");
+    let start = PlanStart::at(Pose::new(20.0, 20.0, 0.0));
+    let goals = [PlanGoal::at(Pose::new(39.4, 20.0, 0.0)), PlanGoal::to([20.0, 20.0])];
+    let request = PlanRequest::new(&map, &model, limits, Mission { start, goal: goals[0] });
+    let error = plan_tour(&request, &goals, &mut |_| false).expect_err("no way back");
+    assert_eq!(error.goal, 1);
+    let found = no_way(Err(error.error));
+    let NoWayReason::StartHeading { heading, other } = found.reason else { panic!("{found}") };
+    assert!(heading.abs() < 0.1 && other.abs() > 3.0 && found.gap.is_none(), "{found}");
+    // Where there is room on one side, nothing is wrong with the heading.
+    let start = PlanStart::at(Pose::new(39.4, 20.0, other));
+    let back = Mission { start, goal: goals[1] };
+    assert!(plan(&PlanRequest { mission: back, ..request }, &mut |_| false).is_ok());
 }
 
 /// Whatever numbers are given, there is an answer.

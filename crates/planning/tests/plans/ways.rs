@@ -87,7 +87,7 @@ fn a_lone_car_reverses_where_it_may() {
     let stops = found.points.iter().filter(|point| point.speed == 0.0).count();
     assert!(stops > found.legs.len());
     let refused = no_way(ask(limits));
-    assert!(matches!(refused.reason, NoWayReason::HeadingUnreachable), "{refused}");
+    assert!(matches!(refused.reason, NoWayReason::HeadingUnreachable { .. }), "{refused}");
 }
 
 /// The lead turns, at speed, and followers hold what they held: the plan goes on from there.

@@ -2,7 +2,7 @@
 
 use super::messages::thing;
 use super::record::{Fields, Record};
-use vocabulary::{EntityId, EventRecord, FleetInfo};
+use vocabulary::{EntityId, EventRecord, FleetInfo, TourGoal};
 
 /// An event and its sentence.
 #[derive(Default)]
@@ -25,17 +25,25 @@ impl Record for EventMessage {
         f.text("words", words)?;
         f.word("kind", &mut event.kind)?;
         f.count("robot_index", &mut event.robot)?;
-        // Both are counted from 1, since 0 is none.
-        let mut number = event.event.map_or(0, |event| event as u64 + 1);
-        f.count("event_number", &mut number)?;
-        event.event = number.checked_sub(1).and_then(|event| usize::try_from(event).ok());
-        let mut leader = event.leader.map_or(0, |leader| leader as u64 + 1);
-        f.count("leader_number", &mut leader)?;
-        event.leader = leader.checked_sub(1).and_then(|leader| usize::try_from(leader).ok());
+        number(f, "event_number", &mut event.event)?;
+        number(f, "leader_number", &mut event.leader)?;
         f.word("refusal", &mut event.refusal)?;
         let mut obstacle = event.obstacle.unwrap_or(EntityId::Ground);
         thing(f, ["obstacle_kind", "obstacle_index"], &mut obstacle)?;
         event.obstacle = Some(obstacle).filter(|thing| *thing != EntityId::Ground);
-        f.several(["measured", "bound"], event.measured.each_mut())
+        f.several(["measured", "bound"], event.measured.each_mut())?;
+        let (mut goal, mut round) = (event.goal.map(|at| at.goal), event.goal.and_then(|at| at.round));
+        number(f, "goal_number", &mut goal)?;
+        number(f, "round_number", &mut round)?;
+        event.goal = goal.map(|goal| TourGoal { goal, round });
+        Some(())
     }
+}
+
+/// A number that is counted from 1, since 0 is none.
+fn number<F: Fields>(f: &mut F, name: &'static str, value: &mut Option<usize>) -> Option<()> {
+    let mut counted = value.map_or(0, |value| value as u64 + 1);
+    f.count(name, &mut counted)?;
+    *value = counted.checked_sub(1).and_then(|value| usize::try_from(value).ok());
+    Some(())
 }

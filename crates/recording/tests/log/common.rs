@@ -9,7 +9,7 @@ use vocabulary::{
     BarrierState, Body, Condition, Constraint, Contact, Edge, EdgeState, EntityId, EventKind, EventRecord,
     FleetInfo, LawQuantity, LawState, MeasurementRecord, Mobility, Outcome, Placement, PlannedPath,
     PlannedPoint, Pose, Prop, Refusal, RobotInfo, RobotState, SafetyState, Shell, Snapshot, Solid,
-    StepRecord, Terrain, TrackingState, Word,
+    StepRecord, Terrain, TourGoal, TrackingState, Word,
 };
 
 /// Numbers without rule, special ones among them (SplitMix64).
@@ -200,6 +200,8 @@ fn event(n: &mut Numbers) -> EventRecord {
         refusal: Refusal::WORDS[n.below(Refusal::WORDS.len())].1,
         obstacle: [None, Some(EntityId::Robot(0)), Some(EntityId::Prop(1))][n.below(3)],
         measured: n.many(),
+        goal: [None, Some(TourGoal { goal: 0, round: None }), Some(TourGoal { goal: 3, round: Some(0) })]
+            [n.below(3)],
         event: [None, Some(0), Some(7)][n.below(3)],
     }
 }

@@ -1,6 +1,7 @@
 //! Annotations on the ground: predicted paths, handles, areas, arrows and faint bodies.
 
-use vocabulary::Pose;
+use std::sync::Arc;
+use vocabulary::{PlannedPath, Pose};
 
 /// Annotations on the ground, in the order in which they are drawn. They lie under the robots and follow the floor as
 /// ribbons do; items with a place or a colour that is not finite are left out.
@@ -16,6 +17,8 @@ pub struct Annotations {
     pub rings: Vec<Ring>,
     /// Faint bodies of robots where they are not; as other ghosts, not seen from just above the ground.
     pub ghosts: Vec<Ghost>,
+    /// Plans that are drawn in place of those that hold for the same robots.
+    pub plans: Vec<Arc<PlannedPath>>,
 }
 
 /// A place with its colour, of a line or an area.

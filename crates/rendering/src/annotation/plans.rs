@@ -16,7 +16,10 @@ const SPACING: f64 = 0.2;
 pub(crate) fn plans(context: &PictureContext<'_>) -> Annotations {
     let mut annotations = Annotations::default();
     let now = context.record.snapshot.time;
-    for plan in context.trail.plans.values() {
+    let new = &context.style.annotations.plans;
+    let is_replaced = |lead: &usize| new.iter().any(|plan| plan.robots.contains(lead));
+    let kept = context.trail.plans.iter().filter(|(lead, _)| !is_replaced(lead)).map(|(_, plan)| plan);
+    for plan in kept.chain(new) {
         let left = plan.points.partition_point(|point| point.time <= now).saturating_sub(1);
         let points = spread(&plan.points[left.min(plan.points.len())..]);
         if points.len() < 2 {

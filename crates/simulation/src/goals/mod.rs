@@ -117,14 +117,21 @@ pub(crate) fn goals(
             );
             return Err(BuildError::Plan { robot: robot_of(lead), why });
         }
-        let convoy = GoalFormation::of(graph, laws, lead, 0.0);
-        let model = convoy.model(&vehicles).map_err(|error| invalid(lead, &error))?;
-        let limits = convoy.limits(&vehicles, &wish.travel);
-        let filtered = convoy.robots.iter().any(|robot| rooms[*robot] > 0.0);
-        let task =
-            PlanTask { model: &model, limits, standing: &standing, moving: &moving, filtered, records };
+        let formation = GoalFormation::of(graph, laws, lead, 0.0);
+        let model = formation.model(&vehicles).map_err(|error| invalid(lead, &error))?;
+        let limits = formation.limits(&vehicles, &wish.travel);
+        let filtered = formation.robots.iter().any(|robot| rooms[*robot] > 0.0);
+        let task = PlanTask {
+            model: &model,
+            limits,
+            standing: &standing,
+            moving: &moving,
+            filtered,
+            records,
+            explains: true,
+        };
         let departure = Departure { start: PlanStart::at(scene.robots[lead].pose), held: None, time: 0.0 };
-        let parts = wish.parts(&task, &departure, 0, wish.clearance(&rooms, &convoy.robots)).map_err(
+        let parts = wish.parts(&task, &departure, 0, wish.clearance(&rooms, &formation.robots)).map_err(
             |(goal, error)| {
                 let name = |whose: EntityId| match whose {
                     EntityId::Robot(index) => robot_of(index),
@@ -132,9 +139,15 @@ pub(crate) fn goals(
                     EntityId::Ground => "the ground".to_owned(),
                 };
                 let moving: Vec<EntityId> = moving.iter().map(|(whose, _)| *whose).collect();
-                let names =
-                    PlanNames { name: &name, robots: &convoy.robots, standing: &standing, moving: &moving };
-                let why = format!("{}{}", wish.name_of(goal), names.why(&error));
+                let names = PlanNames {
+                    name: &name,
+                    robots: &formation.robots,
+                    standing: &standing,
+                    moving: &moving,
+                    from: goal.checked_sub(1).and_then(|before| wish.on_tour(before)),
+                };
+                let to = wish.on_tour(goal).map_or_else(String::new, |goal| format!("to {goal}: "));
+                let why = format!("{to}{}", names.why(&error));
                 BuildError::Plan { robot: robot_of(lead), why }
             },
         )?;
@@ -142,7 +155,7 @@ pub(crate) fn goals(
             lead,
             asked: lead,
             wish,
-            motion: Arc::new(PlannedMotion { parts, robots: convoy.robots, levels: model.levels() }),
+            motion: Arc::new(PlannedMotion { parts, robots: formation.robots, levels: model.levels() }),
             phase: Phase::Drives,
             knows: surroundings.things.iter().map(|thing| thing.known).collect(),
             places: surroundings.things.iter().map(|thing| thing.pose).collect(),

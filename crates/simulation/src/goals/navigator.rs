@@ -9,7 +9,7 @@ use planning::{
 };
 use scene::{Travel, Vehicle};
 use std::sync::Arc;
-use vocabulary::{EntityId, Pose};
+use vocabulary::{EntityId, Pose, TourGoal};
 
 /// Goals of one lead robot at most, over all rounds of a tour: every one of them is planned before the run begins.
 pub(super) const GOALS_MOST: usize = 200;
@@ -70,6 +70,7 @@ pub(super) enum Phase {
 }
 
 /// A formation and what is known of its surroundings: what a plan is made of.
+#[derive(Clone, Copy)]
 pub(super) struct PlanTask<'a> {
     pub(super) model: &'a FormationModel,
     pub(super) limits: TravelLimits,
@@ -79,6 +80,8 @@ pub(super) struct PlanTask<'a> {
     pub(super) filtered: bool,
     /// Whether it is recorded what searches look at.
     pub(super) records: bool,
+    /// Whether somebody wants to know why there is no way.
+    pub(super) explains: bool,
 }
 
 /// Where and how a formation is when it begins to plan.
@@ -116,7 +119,8 @@ impl GoalWish {
             return Ok(near);
         }
         let lasts = |parts: &[PlannedPart]| parts.iter().map(|part| part.plan.duration()).sum::<f64>();
-        let Ok(far) = self.parts_off(task, departure, next, clearance + EASE) else { return Ok(near) };
+        let silent = PlanTask { explains: false, ..*task };
+        let Ok(far) = self.parts_off(&silent, departure, next, clearance + EASE) else { return Ok(near) };
         let is_long = lasts(&far) > LONGER * lasts(&near);
         let (mut chosen, aside) = if is_long { (near, far) } else { (far, near) };
         for (part, aside) in chosen.iter_mut().zip(&aside) {
@@ -144,12 +148,10 @@ impl GoalWish {
                 held: held.as_deref(),
                 ..PlanRequest::new(&map, task.model, task.limits, mission)
             };
-            request.effort.records = task.records;
+            (request.effort.records, request.effort.explains) = (task.records, task.explains);
             let is_last = number + 1 == self.goals.len();
             let schedule = Schedule { begins: time, stays: if is_last { f64::INFINITY } else { self.pause } };
-            let plan =
-                plan_among(&request, &things, schedule, &mut |_| false).map_err(|error| (number, error))?;
-            let plan = in_shape(plan, &request, &things, schedule);
+            let plan = in_shape(&request, &things, schedule).map_err(|error| (number, error))?;
             if let Some(end) = plan.points.last() {
                 start = PlanStart { level: end.level, curvature: end.curvature, ..PlanStart::at(end.pose) };
             }
@@ -161,13 +163,11 @@ impl GoalWish {
         Ok(parts)
     }
 
-    /// What error messages call goal number `goal`.
-    pub(super) fn name_of(&self, goal: usize) -> String {
-        match (self.goals.len(), self.round) {
-            (1, _) => String::new(),
-            (goals, round) if goals == round => format!("to goal {}: ", goal + 1),
-            (_, round) => format!("to goal {} in round {}: ", goal % round + 1, goal / round + 1),
-        }
+    /// Which goal of a tour goal number `goal` over all rounds is; `None` where it is the only one.
+    pub(super) fn on_tour(&self, goal: usize) -> Option<TourGoal> {
+        let (goals, round) = (self.goals.len(), self.round.max(1));
+        let number = (goals > round).then_some(goal / round);
+        (goals > 1).then_some(TourGoal { goal: goal % round, round: number })
     }
 
     /// How far robots stay off things, m.
@@ -183,19 +183,35 @@ impl GoalWish {
     }
 }
 
+/// Part of the effort that goes into a plan that ends in the shape.
+const SHAPED: usize = 3;
+
 /// The plan that ends in the shape where the goal leaves that open and there is one.
 fn in_shape(
-    plan: MotionPlan,
     request: &PlanRequest<'_>,
     things: &[MovingThing],
     schedule: Schedule,
-) -> MotionPlan {
+) -> Result<MotionPlan, PlanError> {
     let goal = request.mission.goal;
-    if goal.level.is_some() || plan.points.last().is_none_or(|end| end.level == 0.0) {
-        return plan;
+    let asked = |request: &PlanRequest<'_>| plan_among(request, things, schedule, &mut |_| false);
+    if goal.level.is_some() {
+        return asked(request);
     }
-    let mission = Mission { goal: goal.at_level(0), ..request.mission };
-    plan_among(&PlanRequest { mission, ..*request }, things, schedule, &mut |_| false).unwrap_or(plan)
+    let mut shaped =
+        PlanRequest { mission: Mission { goal: goal.at_level(0), ..request.mission }, ..*request };
+    // Where there is none, another is looked for, not a reason.
+    shaped.effort.explains = false;
+    shaped.effort.expansions /= SHAPED;
+    match asked(&shaped) {
+        Ok(plan) => Ok(plan),
+        Err(error) => {
+            let mut plan = asked(request)?;
+            if let PlanError::NoWay(no_way) = error {
+                plan.record.extend(&no_way.record);
+            }
+            Ok(plan)
+        }
+    }
 }
 
 impl Navigator {

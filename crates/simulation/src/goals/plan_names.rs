@@ -4,7 +4,7 @@ use super::known_things::owner;
 use crate::caption::short;
 use planning::{Boundary, Convex, NoWay, NoWayReason, PlanError};
 use std::fmt::Write;
-use vocabulary::EntityId;
+use vocabulary::{EntityId, TourGoal};
 
 /// Who and what a plan was asked for.
 pub(super) struct PlanNames<'a> {
@@ -16,6 +16,8 @@ pub(super) struct PlanNames<'a> {
     pub(super) standing: &'a [(EntityId, Convex)],
     /// What moves.
     pub(super) moving: &'a [EntityId],
+    /// The goal that it sets out from, on a tour.
+    pub(super) from: Option<TourGoal>,
 }
 
 impl PlanNames<'_> {
@@ -64,9 +66,13 @@ impl PlanNames<'_> {
             reason => reason.to_string(),
         };
         // Writing to a text cannot fail.
+        if let (NoWayReason::StartHeading { .. }, Some(from)) = (&no_way.reason, self.from) {
+            let _ = write!(text, "; give {from} that heading, or another place");
+        }
         if let Some(gap) = &no_way.gap {
             let [a, b] = &gap.between;
-            let [x, y] = gap.at.map(|value| short((10.0 * value).round() / 10.0));
+            // −0 is written as 0.
+            let [x, y] = gap.at.map(|value| short((10.0 * value).round() / 10.0 + 0.0));
             let width = short((100.0 * gap.width).round() / 100.0);
             let (a, b) = (self.thing(a), self.thing(b));
             let _ = write!(

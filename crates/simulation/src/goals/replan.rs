@@ -58,21 +58,21 @@ fn look(run: &mut Simulation, navigator: &mut Navigator, time: f64) {
         return;
     };
     arrive(run, navigator, time);
-    let convoy = GoalFormation::of(run.formation.graph(), run.formation.laws(), navigator.lead, time);
-    let found = Sightings::by(run, navigator, &convoy, time);
+    let formation = GoalFormation::of(run.formation.graph(), run.formation.laws(), navigator.lead, time);
+    let found = Sightings::by(run, navigator, &formation, time);
     let others = |robots: &[usize]| {
         let mut robots = robots.to_vec();
         robots.sort_unstable();
         robots
     };
-    let changed = succeeded || others(&convoy.robots) != others(&navigator.motion.robots);
+    let changed = succeeded || others(&formation.robots) != others(&navigator.motion.robots);
     let has_goals = navigator.reached < navigator.wish.goals.len();
     match navigator.phase {
         Phase::Waits { since, tried }
             if time - tried >= RETRIES - 1e-9 && time >= navigator.motion.ends() =>
         {
             navigator.phase = Phase::Waits { since, tried: time };
-            if plan_again(run, navigator, &convoy, &found, time).is_ok() {
+            if plan_again(run, navigator, &formation, &found, time).is_ok() {
                 run.events.tell(EventRecord::done(EventKind::Reroute, navigator.lead, None));
             } else if time - since > navigator.wish.travel.patience {
                 navigator.phase = Phase::Stays;
@@ -80,7 +80,7 @@ fn look(run: &mut Simulation, navigator: &mut Navigator, time: f64) {
             }
         }
         Phase::Drives if has_goals || navigator.replans => {
-            let meeting = found.meeting(run, navigator, &convoy, time);
+            let meeting = found.meeting(run, navigator, &formation, time);
             let blocked = meeting.as_ref().map(|(whose, _)| *whose);
             if !changed && !navigator.replans && blocked.is_none() {
                 return;
@@ -91,7 +91,7 @@ fn look(run: &mut Simulation, navigator: &mut Navigator, time: f64) {
                 ..EventRecord::done(kind, navigator.lead, None)
             };
             let (reroutes, halts) = (told(EventKind::Reroute), told(EventKind::Halt));
-            if plan_again(run, navigator, &convoy, &found, time).is_ok() {
+            if plan_again(run, navigator, &formation, &found, time).is_ok() {
                 run.events.tell(reroutes);
             } else {
                 halt(run, navigator, meeting.map(|(_, meeting)| meeting), time);
@@ -135,10 +135,11 @@ fn arrive(run: &mut Simulation, navigator: &mut Navigator, time: f64) {
     let there = |part: &&PlannedPart| part.goal.is_some() && part.arrives() <= time.min(part.until);
     let parts = navigator.motion.parts().get(navigator.since..).unwrap_or_default();
     let reached = parts.iter().rfind(there).and_then(|part| part.goal).map_or(0, |goal| goal + 1);
-    if reached > navigator.reached {
-        navigator.reached = reached;
-        run.events.tell(EventRecord::done(EventKind::Arrive, navigator.lead, None));
+    for goal in navigator.reached..reached {
+        let goal = navigator.wish.on_tour(goal);
+        run.events.tell(EventRecord { goal, ..EventRecord::done(EventKind::Arrive, navigator.lead, None) });
     }
+    navigator.reached = navigator.reached.max(reached);
 }
 
 /// What a formation knows of what is around it.
@@ -155,11 +156,11 @@ struct Sightings {
 
 impl Sightings {
     /// Looks round with the proximity sensors of all robots of a formation.
-    fn by(run: &Simulation, navigator: &mut Navigator, convoy: &GoalFormation, time: f64) -> Self {
+    fn by(run: &Simulation, navigator: &mut Navigator, formation: &GoalFormation, time: f64) -> Self {
         let snapshot = run.snapshot();
         let place = |robot: usize| snapshot.robots[robot].motion.pose;
         let senses = |body: &Convex| {
-            convoy.robots.iter().any(|robot| {
+            formation.robots.iter().any(|robot| {
                 let pose = place(*robot);
                 run.senses(*robot).is_some_and(|range| body.distance([pose.x, pose.y]) <= range)
             })
@@ -199,7 +200,7 @@ impl Sightings {
             }
         }
         found.moving = run.goals.surroundings.moving(|thing| navigator.knows[thing]);
-        found.see_robots(run, navigator, convoy, &senses, time);
+        found.see_robots(run, navigator, formation, &senses, time);
         found
     }
 
@@ -208,7 +209,7 @@ impl Sightings {
         &mut self,
         run: &Simulation,
         navigator: &Navigator,
-        convoy: &GoalFormation,
+        formation: &GoalFormation,
         senses: &dyn Fn(&Convex) -> bool,
         time: f64,
     ) {
@@ -216,7 +217,7 @@ impl Sightings {
         let others = run.goals.navigators.iter().filter(|other| other.asked != navigator.asked);
         let tracks: Vec<_> = others.flat_map(|other| other.tracks(vehicles)).collect();
         for (robot, state) in run.snapshot().robots.iter().enumerate() {
-            if convoy.robots.contains(&robot) || !state.is_present() {
+            if formation.robots.contains(&robot) || !state.is_present() {
                 continue;
             }
             let whose = EntityId::Robot(robot);
@@ -258,14 +259,15 @@ impl Sightings {
         &self,
         run: &Simulation,
         navigator: &Navigator,
-        convoy: &GoalFormation,
+        formation: &GoalFormation,
         time: f64,
     ) -> Option<(EntityId, Meeting)> {
         if self.new.is_empty() && self.strange.is_empty() && self.changed.is_empty() {
             return None;
         }
         let vehicles = &run.goals.vehicles;
-        let (model, limits) = (convoy.model(vehicles).ok()?, convoy.limits(vehicles, &navigator.wish.travel));
+        let (model, limits) =
+            (formation.model(vehicles).ok()?, formation.limits(vehicles, &navigator.wish.travel));
         if model.robots() != navigator.motion.robots.len() {
             return None;
         }
@@ -305,24 +307,25 @@ impl Sightings {
 fn plan_again(
     run: &mut Simulation,
     navigator: &mut Navigator,
-    convoy: &GoalFormation,
+    formation: &GoalFormation,
     found: &Sightings,
     time: f64,
 ) -> Result<(), PlanError> {
     let vehicles = run.goals.vehicles.clone();
-    let model = convoy.model(&vehicles)?;
-    let limits = convoy.limits(&vehicles, &navigator.wish.travel);
-    let filtered = convoy.robots.iter().any(|robot| run.goals.rooms[*robot] > 0.0);
+    let model = formation.model(&vehicles)?;
+    let limits = formation.limits(&vehicles, &navigator.wish.travel);
+    let filtered = formation.robots.iter().any(|robot| run.goals.rooms[*robot] > 0.0);
     let (standing, moving) = (&found.standing, &found.moving);
-    let task = PlanTask { model: &model, limits, standing, moving, filtered, records: false };
-    let departure = departure(run, navigator, convoy, &model, &limits, time);
+    let task =
+        PlanTask { model: &model, limits, standing, moving, filtered, records: false, explains: false };
+    let departure = departure(run, navigator, formation, &model, &limits, time);
     let wish = navigator.wish.clone();
-    let clearance = wish.clearance(&run.goals.rooms, &convoy.robots);
+    let clearance = wish.clearance(&run.goals.rooms, &formation.robots);
     let mut last = None;
     for share in BEGINS_WITH {
         match wish.parts(&task, &departure, navigator.reached, share * clearance) {
             Ok(parts) => {
-                let (robots, levels, new) = (convoy.robots.clone(), model.levels(), parts.len());
+                let (robots, levels, new) = (formation.robots.clone(), model.levels(), parts.len());
                 let motion = PlannedMotion { robots, levels, ..navigator.motion.then(departure.time, parts) };
                 if navigator.since == usize::MAX {
                     navigator.since = motion.parts().len() - new;
@@ -348,7 +351,7 @@ fn plan_again(
 fn departure(
     run: &Simulation,
     navigator: &Navigator,
-    convoy: &GoalFormation,
+    formation: &GoalFormation,
     model: &FormationModel,
     limits: &TravelLimits,
     time: f64,
@@ -356,7 +359,7 @@ fn departure(
     let now = run.snapshot().robots[navigator.lead].motion;
     let last = (model.levels() - 1) as f64;
     let narrowing = |edge: usize| run.decision(edge).narrowing.clamp(0.0, 1.0);
-    let narrowest = convoy.followers.iter().map(|follower| narrowing(follower.edge)).fold(0.0, f64::max);
+    let narrowest = formation.followers.iter().map(|follower| narrowing(follower.edge)).fold(0.0, f64::max);
     let planned = navigator.motion.point_at(time).filter(|point| {
         navigator.motion.robots.first() == Some(&navigator.lead) && apart(point.pose, now.pose) < OFF
     });
@@ -366,11 +369,12 @@ fn departure(
         None => (now.pose, now.speed, turning, narrowest * last),
     };
     let memories = &run.state.memories;
-    let held =
-        convoy.followers.iter().map(|follower| match (&follower.heading, memories[follower.edge].heading) {
+    let held = formation.followers.iter().map(|follower| {
+        match (&follower.heading, memories[follower.edge].heading) {
             (None, _) => Some([0.0; 2]),
             (Some(_), heading) => heading.map(|heading| [heading.heading, heading.curvature]),
-        });
+        }
+    });
     // A plan that is to begin later does.
     let waits = navigator.motion.parts().iter().find(|part| part.goal == Some(navigator.reached));
     let begins = waits.filter(|_| speed == 0.0).map_or(time, |part| part.begins.max(time));
