@@ -128,6 +128,7 @@ const ARROWS: [(&str, &[&str]); 24] = [
             "scene",
             "simulation",
             "studies",
+            "sweeps",
             "metrics",
             "output",
             "recording",

@@ -15,6 +15,7 @@ mod program;
 mod run;
 mod scene;
 mod simulation;
+mod study;
 mod table;
 mod values;
 mod watch;
@@ -34,6 +35,8 @@ mod _echelon {
     use crate::scene::{PyScene, scenes};
     #[pymodule_export]
     use crate::simulation::PySimulation;
+    #[pymodule_export]
+    use crate::study::PyStudy;
     #[pymodule_export]
     use crate::table::PyTable;
 

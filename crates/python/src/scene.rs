@@ -13,7 +13,7 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyMapping, PyString, PyType};
 use rendering::{Gpu, GpuCameraRenderer};
-use scene::{Loaded, Override, SHIPPED, Scene};
+use scene::{Loaded, Override, SHIPPED, Scene, SceneText};
 use std::path::PathBuf;
 use std::sync::Mutex;
 use studies::{RecordSource, SceneRun};
@@ -64,6 +64,18 @@ impl PyScene {
         self.with(vec![set.parse().map_err(of_scene::<scene::OverrideError>)?])
     }
 
+    /// What is set on top of its text.
+    pub(crate) fn sets(&self) -> &[Override] {
+        &self.sets
+    }
+
+    /// Its text, with laws in the places of the names of their files, and where it is from.
+    pub(crate) fn source(&self) -> PyResult<SceneSource> {
+        let mut text = SceneText::parse(&self.text).map_err(of_scene)?;
+        text.embed_laws(&self.scene);
+        Ok(SceneSource { text: text.text(), path: self.path.clone() })
+    }
+
     /// A second one that is the same.
     pub(crate) fn again(&self) -> Self {
         let Self { scene, text, path, sets } = self;
@@ -90,6 +102,12 @@ impl PyScene {
         }
         Ok(run)
     }
+}
+
+/// What a scene was read from.
+pub(crate) struct SceneSource {
+    pub(crate) text: String,
+    pub(crate) path: PathBuf,
 }
 
 /// What makes a scene again: a function and its arguments.

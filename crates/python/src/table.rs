@@ -3,7 +3,7 @@
 use crate::error::not_pickled;
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
-use arrow_array::types::Float64Type;
+use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{
     ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, RecordBatchIterator, StringArray,
 };
@@ -84,7 +84,7 @@ impl PyTable {
         self.first.schema().fields().iter().map(|field| field.name().clone()).collect()
     }
 
-    /// A column: an array of float64 or bool, or a list of str.
+    /// A column: an array of float64, int64 or bool, or a list of str.
     fn __getitem__<'py>(&self, py: Python<'py>, column: &str) -> PyResult<Bound<'py, PyAny>> {
         let schema = self.first.schema();
         let Ok(index) = schema.index_of(column) else {
@@ -99,6 +99,10 @@ impl PyTable {
         Ok(match schema.field(index).data_type() {
             DataType::Float64 => {
                 let values = arrays.flat_map(|a| a.as_primitive::<Float64Type>().values().iter().copied());
+                PyArray1::from_vec(py, values.collect()).into_any()
+            }
+            DataType::Int64 => {
+                let values = arrays.flat_map(|a| a.as_primitive::<Int64Type>().values().iter().copied());
                 PyArray1::from_vec(py, values.collect()).into_any()
             }
             DataType::Boolean => {

@@ -41,6 +41,11 @@ pub(crate) fn to_toml(value: &Bound<'_, PyAny>, depth: usize) -> PyResult<Value>
     }
 }
 
+/// A value as it stands in a scene.
+pub(crate) fn toml_text(value: &Bound<'_, PyAny>) -> PyResult<String> {
+    Ok(to_toml(value, 0)?.to_string())
+}
+
 /// A dictionary as a table. Keys whose value is `None` are left out.
 pub(crate) fn table(mapping: &Bound<'_, PyMapping>, depth: usize) -> PyResult<Table> {
     let mut table = Table::new();

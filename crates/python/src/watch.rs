@@ -17,6 +17,7 @@ pub(crate) struct Watch {
     /// Called with what is done and the total.
     progress: Option<Py<PyAny>>,
     total: AtomicU64,
+    pauses: AtomicU64,
 }
 
 impl Watch {
@@ -29,6 +30,11 @@ impl Watch {
         looked
             .map_err(|error| *self.raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error))
             .is_ok()
+    }
+
+    /// How long the work has been going on, s, to a few hundredths.
+    pub(crate) fn seconds(&self) -> f64 {
+        self.pauses.load(Relaxed) as f64 * PAUSE.as_secs_f64()
     }
 
     /// The work has so many steps.
@@ -60,14 +66,16 @@ pub(crate) fn detached<T: Send>(
         raised: Mutex::new(None),
         progress,
         total: AtomicU64::new(total),
+        pauses: AtomicU64::new(0),
     };
     let done = py.detach(|| {
         thread::scope(|scope| {
             let (stop, stopped) = channel::<()>();
-            let due = &watch.due;
+            let (due, pauses) = (&watch.due, &watch.pauses);
             let ticks = move || {
                 while stopped.recv_timeout(PAUSE) == Err(RecvTimeoutError::Timeout) {
                     due.store(true, Relaxed);
+                    pauses.fetch_add(1, Relaxed);
                 }
             };
             thread::Builder::new().spawn_scoped(scope, ticks)?;

@@ -25,6 +25,6 @@ pub use column::{Column, NamedColumn};
 pub use error::Error;
 pub use manifest::{Manifest, Status};
 pub use numbers::{edge_columns, edge_numbers, robot_columns, robot_numbers};
-pub use parquet_file::{ParquetWriter, append_columns, read_mark, read_whole};
+pub use parquet_file::{ParquetWriter, append_bytes, append_columns, parquet_bytes, read_mark, read_whole};
 pub use run::{Finished, Recorder, RunOptions, metrics_text};
 pub use table::{TableBuilder, TableKind, read_table};

@@ -2,6 +2,7 @@
 
 use crate::Error;
 use crate::column::{Column, NamedColumn};
+use bytes::Bytes;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::column::reader::ColumnReader;
 use parquet::column::writer::ColumnWriter;
@@ -9,10 +10,11 @@ use parquet::data_type::ByteArray;
 use parquet::errors::{ParquetError, Result};
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
-use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::file::reader::{ChunkReader, FileReader, RowGroupReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::Type;
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -40,22 +42,14 @@ impl ParquetWriter {
     /// # Errors
     /// [`Error`] where it cannot be written.
     pub fn marked(path: &Path, columns: &[NamedColumn], mark: &str) -> std::result::Result<Self, Error> {
-        Self::with(path, columns, Some(vec![KeyValue::new(MARK.to_owned(), mark.to_owned())]))
+        Self::with(path, columns, Some(mark))
     }
 
-    fn with(
-        path: &Path,
-        columns: &[NamedColumn],
-        metadata: Option<Vec<KeyValue>>,
-    ) -> std::result::Result<Self, Error> {
+    fn with(path: &Path, columns: &[NamedColumn], mark: Option<&str>) -> std::result::Result<Self, Error> {
         let draft = path.with_extension("tmp");
         let file = File::create(&draft).map_err(Error::io("create", &draft))?;
-        let properties = WriterProperties::builder()
-            .set_compression(Compression::ZSTD(ZstdLevel::default()))
-            .set_key_value_metadata(metadata)
-            .build();
         let file = schema(columns)
-            .and_then(|schema| SerializedFileWriter::new(file, schema, Arc::new(properties)))
+            .and_then(|schema| SerializedFileWriter::new(file, schema, properties(mark)))
             .map_err(Error::table(&draft))?;
         Ok(Self { draft, path: path.to_owned(), file })
     }
@@ -91,7 +85,45 @@ impl Drop for ParquetWriter {
 /// [`Error`] where it cannot be read, or lacks a column.
 pub fn append_columns(path: &Path, columns: &mut [NamedColumn]) -> std::result::Result<(), Error> {
     let file = File::open(path).map_err(Error::io("open", path))?;
-    let reader = SerializedFileReader::new(file).map_err(Error::table(path))?;
+    append_from(&SerializedFileReader::new(file).map_err(Error::table(path))?, path, columns)
+}
+
+/// As [`append_columns`], of a file in memory, with its mark.
+///
+/// # Errors
+/// [`Error`] where it is no such file, or lacks a column.
+pub fn append_bytes(
+    bytes: Vec<u8>,
+    columns: &mut [NamedColumn],
+) -> std::result::Result<Option<String>, Error> {
+    let path = Path::new(IN_MEMORY);
+    let reader = SerializedFileReader::new(Bytes::from(bytes)).map_err(Error::table(path))?;
+    append_from(&reader, path, columns)?;
+    Ok(mark_of(&reader))
+}
+
+/// Rows as the bytes of a file with a mark; they are taken out of `columns`.
+///
+/// # Errors
+/// [`Error`] where they cannot be encoded.
+pub fn parquet_bytes(columns: &mut [NamedColumn], mark: &str) -> std::result::Result<Vec<u8>, Error> {
+    let path = Path::new(IN_MEMORY);
+    let mut written = || {
+        let mut file = SerializedFileWriter::new(vec![], schema(columns)?, properties(Some(mark)))?;
+        write_group(&mut file, columns)?;
+        file.into_inner()
+    };
+    written().map_err(Error::table(path))
+}
+
+/// What a file is called in messages that has no name.
+const IN_MEMORY: &str = "rows in memory";
+
+fn append_from<R: ChunkReader + 'static>(
+    reader: &SerializedFileReader<R>,
+    path: &Path,
+    columns: &mut [NamedColumn],
+) -> std::result::Result<(), Error> {
     let schema = reader.metadata().file_metadata().schema_descr_ptr();
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(Error::table(path))?;
@@ -113,9 +145,12 @@ pub fn append_columns(path: &Path, columns: &mut [NamedColumn]) -> std::result::
 /// [`Error`] where it cannot be read.
 pub fn read_mark(path: &Path) -> std::result::Result<Option<String>, Error> {
     let file = File::open(path).map_err(Error::io("open", path))?;
-    let reader = SerializedFileReader::new(file).map_err(Error::table(path))?;
+    Ok(mark_of(&SerializedFileReader::new(file).map_err(Error::table(path))?))
+}
+
+fn mark_of<R: ChunkReader + 'static>(reader: &SerializedFileReader<R>) -> Option<String> {
     let pairs = reader.metadata().file_metadata().key_value_metadata();
-    Ok(pairs.and_then(|pairs| pairs.iter().find(|pair| pair.key == MARK)?.value.clone()))
+    pairs.and_then(|pairs| pairs.iter().find(|pair| pair.key == MARK)?.value.clone())
 }
 
 /// Whole numbers of the file at `path`, by the name of their column.
@@ -127,6 +162,12 @@ pub fn read_whole(path: &Path, name: &'static str) -> std::result::Result<Vec<i6
     append_columns(path, &mut columns)?;
     let [NamedColumn { column, .. }] = columns;
     Ok(if let Column::Whole(numbers) = column { numbers } else { vec![] })
+}
+
+fn properties(mark: Option<&str>) -> Arc<WriterProperties> {
+    let mark = mark.map(|mark| vec![KeyValue::new(MARK.to_owned(), mark.to_owned())]);
+    let properties = WriterProperties::builder().set_compression(Compression::ZSTD(ZstdLevel::default()));
+    Arc::new(properties.set_key_value_metadata(mark).build())
 }
 
 fn schema(columns: &[NamedColumn]) -> Result<Arc<Type>> {
@@ -147,7 +188,10 @@ fn schema(columns: &[NamedColumn]) -> Result<Arc<Type>> {
     Type::group_type_builder("table").with_fields(fields).build().map(Arc::new)
 }
 
-fn write_group(file: &mut SerializedFileWriter<File>, columns: &mut [NamedColumn]) -> Result<()> {
+fn write_group<W: Write + Send>(
+    file: &mut SerializedFileWriter<W>,
+    columns: &mut [NamedColumn],
+) -> Result<()> {
     let mut group = file.next_row_group()?;
     for named in columns {
         write_column(&mut group, &mut named.column)?;
@@ -155,7 +199,10 @@ fn write_group(file: &mut SerializedFileWriter<File>, columns: &mut [NamedColumn
     group.close().map(drop)
 }
 
-fn write_column(group: &mut SerializedRowGroupWriter<'_, File>, column: &mut Column) -> Result<()> {
+fn write_column<W: Write + Send>(
+    group: &mut SerializedRowGroupWriter<'_, W>,
+    column: &mut Column,
+) -> Result<()> {
     let Some(mut writer) = group.next_column()? else {
         return Err(ParquetError::General("more columns than the file has".into()));
     };

@@ -8,7 +8,7 @@ use recording::Status;
 use scene::{Diagnostics, Loaded, Override, Role, Scene, Study, StudyFault, Values, value_text};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use studies::copies::{Episode, StartScatter};
 use studies::run::JudgedRun;
 use studies::{PROGRAM, SceneRun};
@@ -40,7 +40,25 @@ impl Experiment {
             return Err(Error::Study(faults));
         }
         let path = PathBuf::from(&study.scene);
-        let Loaded { text, files, .. } = Scene::load(&path, &study.set).map_err(Error::Scene)?;
+        let loaded = Scene::load(&path, &study.set).map_err(Error::Scene)?;
+        Ok(Self::of_loaded(study, loaded, path))
+    }
+
+    /// As [`Experiment::new`], of the text of a scene; `path` names it in messages, and files are looked for beside it.
+    ///
+    /// # Errors
+    /// As [`Experiment::new`].
+    pub fn of_text(study: Study, text: &str, path: PathBuf) -> Result<Self, Error> {
+        let faults = study.faults();
+        if !faults.is_empty() {
+            return Err(Error::Study(faults));
+        }
+        let loaded = Scene::parse(text, &path, &study.set).map_err(Error::Scene)?;
+        Ok(Self::of_loaded(study, loaded, path))
+    }
+
+    fn of_loaded(study: Study, loaded: Loaded, path: PathBuf) -> Self {
+        let Loaded { text, files, .. } = loaded;
         let mut hash = Xxh3::new();
         // Neither its title nor where the scene lies makes a study another.
         let same = Study { title: String::new(), scene: String::new(), ..study.clone() };
@@ -53,7 +71,12 @@ impl Experiment {
             hash.update(&[0]);
         }
         let fingerprint = format!("{:032x}", hash.digest128());
-        Ok(Self { design: Design::new(study), text, path, fingerprint })
+        Self { design: Design::new(study), text, path, fingerprint }
+    }
+
+    /// Where the scene stands.
+    pub fn path(&self) -> &Path {
+        &self.path
     }
 
     /// Which run has which values.

@@ -13,7 +13,7 @@ use crate::experiment::Experiment;
 use crate::index_set::IndexSet;
 use crate::row::{Row, RowTable};
 use output::{Claim, write_whole};
-use recording::{ParquetWriter, append_columns, read_mark};
+use recording::{ParquetWriter, append_bytes, append_columns, parquet_bytes, read_mark};
 use scene::Study;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -276,6 +276,47 @@ pub fn write_rows<'a>(
     Ok(())
 }
 
+/// Rows as the bytes of a file, which carries the fingerprint of their study.
+///
+/// # Errors
+/// [`Error`] where they cannot be encoded.
+pub fn part_bytes(experiment: &Experiment, rows: &[Row]) -> Result<Vec<u8>, Error> {
+    let mut table = RowTable::new(experiment.study());
+    for row in rows {
+        table.push(row);
+    }
+    Ok(parquet_bytes(table.columns_mut(), experiment.fingerprint())?)
+}
+
+/// The rows of files in memory, by index.
+///
+/// # Errors
+/// [`Error::Usage`] where one is of another study or of another version, or a run is there twice.
+pub fn joined(experiment: &Experiment, parts: &[Vec<u8>]) -> Result<RowTable, Error> {
+    let mut rows = BTreeMap::new();
+    for part in parts {
+        let mut table = RowTable::new(experiment.study());
+        let mark = append_bytes(part.clone(), table.columns_mut())?;
+        if mark.as_deref() != Some(experiment.fingerprint()) {
+            return Err(Error::Usage(format!("a part {OTHERS}")));
+        }
+        for row in table.rows() {
+            let index = row.point.index;
+            if rows.insert(index, row).is_some() {
+                return Err(Error::Usage(format!("run {index} is there twice")));
+            }
+        }
+    }
+    let mut table = RowTable::new(experiment.study());
+    for row in rows.values() {
+        table.push(row);
+    }
+    Ok(table)
+}
+
+/// Why rows do not go together.
+const OTHERS: &str = "has rows of another study, of another scene, or by another version of the program";
+
 /// The indices of the rows of a file.
 fn indices(path: &Path) -> Result<Vec<u64>, Error> {
     let whole = recording::read_whole(path, "index")?;
@@ -350,10 +391,7 @@ pub fn merge(
     let mut found = IndexSet::default();
     for path in &files {
         if read_mark(path)?.as_deref() != Some(experiment.fingerprint()) {
-            return Err(Error::Usage(format!(
-                "{} has rows of another study, of another scene, or by another version of the program",
-                path.display()
-            )));
+            return Err(Error::Usage(format!("{} {OTHERS}", path.display())));
         }
         for index in indices(path)? {
             if !found.insert(index) {

@@ -25,7 +25,9 @@ pub use chart::{StudyFigure, charts, edge_line};
 pub use design::{Axis, Design, RunPoint};
 pub use error::Error;
 pub use experiment::{CAMERAS, Experiment, GoOn};
-pub use folder::{StudyFolder, StudyManifest, for_every_row, merge, row_files, write_rows};
+pub use folder::{
+    StudyFolder, StudyManifest, for_every_row, joined, merge, part_bytes, row_files, write_rows,
+};
 pub use index_set::IndexSet;
 pub use interval::wilson;
 pub use measure::{MEASURES, Measure};

@@ -196,7 +196,7 @@ fn what_cannot_be_a_study_is_said_before_anything_runs() {
         (vec!["line-three", "--shard", "4/3"], "from 1 to N"),
         (vec!["line-three", "--boundary", "met"], "--boundary needs"),
         (vec!["no-such-scene"], "no such file"),
-        (vec!["vision-two"], "take pictures"),
+        (vec!["vision-seven-v"], "take pictures"),
         (vec!["merge", "out", "study.toml"], "--study"),
         (vec!["show", "nowhere"], "study.json"),
         (vec![], "STUDY|SCENE"),

@@ -23,7 +23,7 @@ __version__ : str
 """
 
 from . import _driver  # noqa: F401  before any driver is loaded
-from ._echelon import EDGE_COLUMNS, INPUTS, ROBOT_COLUMNS, SIGNALS, Run, Scene, Simulation, Table, __version__, scenes
+from ._echelon import EDGE_COLUMNS, INPUTS, ROBOT_COLUMNS, SIGNALS, Run, Scene, Simulation, Study, Table, __version__, scenes
 from ._errors import (
     BusyError,
     EchelonError,
@@ -38,6 +38,7 @@ from ._errors import (
 from ._film import Film
 from ._law import Law, Observations
 from ._run import Expectation
+from ._sweep import sweep
 
 __all__ = [
     "EDGE_COLUMNS",
@@ -60,7 +61,9 @@ __all__ = [
     "SceneError",
     "SceneFault",
     "Simulation",
+    "Study",
     "Table",
     "__version__",
     "scenes",
+    "sweep",
 ]

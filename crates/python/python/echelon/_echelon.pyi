@@ -20,6 +20,7 @@ __all__ = [
     "Run",
     "Scene",
     "Simulation",
+    "Study",
     "Table",
     "__version__",
     "program",
@@ -252,9 +253,54 @@ class Table:
     def columns(self) -> list[str]:
         """Names of the columns, which end in their units."""
     def __getitem__(self, column: str, /) -> NDArray[Any] | list[str]:
-        """A column: an array of float64 or bool, or a list of str."""
+        """A column: an array of float64, int64 or bool, or a list of str."""
     def __len__(self) -> int:
         """Number of rows."""
+
+@final
+class Study:
+    """Many runs of a scene that differ. It does not change, and can be pickled."""
+    def __new__(
+        cls,
+        scene: Scene,
+        vary: Mapping[str, Any] | None = None,
+        *,
+        seeds: int = 1,
+        samples: int = 1,
+        sampling: str = "independent",
+        seed: int = 1,
+        scatter: tuple[float, float] = (0.0, 0.0),
+        title: str | None = None,
+    ) -> Study:
+        """-"""
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> Study:
+        """-"""
+    def __reduce__(self) -> tuple[Callable[..., Study], tuple[str, str, Path]]: ...
+    @property
+    def runs(self) -> int:
+        """-"""
+    def __len__(self) -> int: ...
+    @property
+    def fingerprint(self) -> str:
+        """-"""
+    def to_toml(self) -> str:
+        """-"""
+    def point(self, index: int) -> dict[str, Any]:
+        """-"""
+    def run(
+        self,
+        start: int = 0,
+        stop: int | None = None,
+        *,
+        threads: int | None = None,
+        progress: Callable[[int, int], Any] | bool | None = None,
+    ) -> Table:
+        """-"""
+    def part(self, start: int, stop: int, *, threads: int | None = None) -> bytes:
+        """-"""
+    def joined(self, parts: list[bytes]) -> Table:
+        """-"""
 
 @final
 class Run:

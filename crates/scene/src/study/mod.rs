@@ -99,6 +99,14 @@ impl Study {
         read::parse(&text, path)
     }
 
+    /// Reads the text of a study; `path` names it in messages.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, Diagnostics> {
+        read::parse(text, path)
+    }
+
     /// Faults of the study at `path` where it has the keys they name; `None` where it has none of them.
     pub fn located(path: &Path, faults: &[StudyFault]) -> Option<Diagnostics> {
         read::located(&crate::files::read_text(path).ok()?, path, faults)
