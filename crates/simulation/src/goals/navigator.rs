@@ -183,9 +183,6 @@ impl GoalWish {
     }
 }
 
-/// Part of the effort that goes into a plan that ends in the shape.
-const SHAPED: usize = 3;
-
 /// The plan that ends in the shape where the goal leaves that open and there is one.
 fn in_shape(
     request: &PlanRequest<'_>,
@@ -201,7 +198,6 @@ fn in_shape(
         PlanRequest { mission: Mission { goal: goal.at_level(0), ..request.mission }, ..*request };
     // Where there is none, another is looked for, not a reason.
     shaped.effort.explains = false;
-    shaped.effort.expansions /= SHAPED;
     match asked(&shaped) {
         Ok(plan) => Ok(plan),
         Err(error) => {
