@@ -8,6 +8,8 @@ use scene::{Scene, VehicleKind};
 use std::path::Path;
 use studies::SceneRun;
 use studies::budget::{Budget, sensing_cases};
+use studies::copies::StartScatter;
+use studies::tune::TuneEffort;
 use vocabulary::GRAVITY;
 use vocabulary::math;
 
@@ -89,7 +91,8 @@ fn one_digest_has_one_late_error() {
     assert_eq!(written(&at("kept")), wanted, "lab");
 
     // The scene's own gains are the first trial.
-    let [first, _] = studies::tune::tune(&scene, 1, |_| false).expect("gains");
+    let effort = TuneEffort { most: 1, seeds: 1, scatter: StartScatter::default() };
+    let [first, _] = studies::tune::tune(&scene, &effort, |_| false).expect("gains");
     assert_eq!(first.late_error, wanted[0], "tune");
 
     // The first case of a budget is the scene itself.

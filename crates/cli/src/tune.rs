@@ -7,10 +7,12 @@ use crate::print::{json, say};
 use crate::progress::Progress;
 use crate::{Outcome, interrupt};
 use clap::Args;
+use scene::FollowerScatter;
 use serde_json::json;
 use std::collections::BTreeMap;
 use studies::SceneRun;
-use studies::tune::{Trial, tune as search};
+use studies::copies::StartScatter;
+use studies::tune::{Trial, TuneEffort, tune as search};
 use vocabulary::counted;
 
 #[derive(Debug, Args)]
@@ -20,6 +22,13 @@ pub(crate) struct TuneArgs {
     /// Largest number of runs of the scene
     #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(4..=100_000))]
     trials: u64,
+    /// Runs of a trial, each with a seed of its own: gains have to hold over all of them
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    seeds: u64,
+    /// Start every follower within so many metres of where the scene puts it, with a heading that is off by so much: 0.5 or
+    /// "0.5,20 deg"
+    #[arg(long, value_name = "M[,ANGLE]", value_parser = crate::sweep::scatter)]
+    scatter: Option<FollowerScatter>,
 }
 
 pub(crate) fn tune(args: &TuneArgs) -> Outcome {
@@ -33,7 +42,8 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
         return Err(Failure::Usage(text));
     }
     let quiet = args.scene.quiet || args.scene.json;
-    let what = format!("Tuning {}, at most {} runs", stem(&args.scene.scene), args.trials);
+    let what =
+        format!("Tuning {}, at most {}", stem(&args.scene.scene), counted(args.trials * args.seeds, "run"));
     let progress = Progress::begin(&what, args.trials, quiet);
     let (mut tried, mut interrupted) = (0, false);
     let look = |_: &Trial| {
@@ -42,9 +52,13 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
         interrupted = interrupt::asked();
         !interrupted
     };
+    let FollowerScatter { position, heading } = args.scatter.unwrap_or_default();
+    let followers = scene.robots.iter().enumerate().filter(|(_, robot)| robot.role.follow().is_some());
+    let scatter = StartScatter { robots: followers.map(|(index, _)| index).collect(), position, heading };
     // The scene's own gains are the first trial.
     let most = usize::try_from(args.trials - 1).unwrap_or(usize::MAX);
-    let found = search(&scene, most, look).map_err(|error| Failure::Usage(error.to_string()))?;
+    let effort = TuneEffort { most, seeds: args.seeds, scatter };
+    let found = search(&scene, &effort, look).map_err(|error| Failure::Usage(error.to_string()))?;
     drop(progress);
     let [first, best] = &found;
     if args.scene.json {
@@ -62,13 +76,14 @@ pub(crate) fn tune(args: &TuneArgs) -> Outcome {
         {
             say(&format!("\ntuned: {law}, of {}; other followers keep theirs", names.join(", ")));
         }
-        say(&format!("\nof {}; in the scene:\n", counted(tried, "run")));
+        let each = if args.seeds > 1 { format!(" of {}", counted(args.seeds, "run")) } else { String::new() };
+        say(&format!("\nof {}{each}; in the scene:\n", counted(tried, "trial")));
         say(&in_scene(&best.gains));
     }
     if interrupted {
         return Err(Failure::Interrupted(format!(
             "after {}; the best so far is printed",
-            counted(tried, "run")
+            counted(tried, "trial")
         )));
     }
     Ok(())

@@ -15,7 +15,7 @@ mod plan;
 mod svg;
 mod trim;
 
-pub use map::{Map, MapAxis, MapLine};
+pub use map::{HeatMap, MapAxis, MapLine};
 pub use plan::{Arrow, Note, Plan, PlanDots, PlanNode, PlanOutline, PlanPath, PlanStrip, Side};
 pub use svg::Rgb;
 

@@ -32,7 +32,7 @@ pub struct MapLine {
 
 /// Values over two axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Map {
+pub struct HeatMap {
     /// Over everything.
     pub title: String,
     /// From left to right.
@@ -59,13 +59,13 @@ pub struct Map {
 /// those who see few colours.
 const COLOURS: [Rgb; 9] = [
     [0.267, 0.005, 0.329],
-    [0.283, 0.141, 0.458],
-    [0.254, 0.265, 0.530],
-    [0.207, 0.372, 0.553],
-    [0.164, 0.471, 0.558],
+    [0.279, 0.175, 0.483],
+    [0.230, 0.322, 0.546],
+    [0.173, 0.449, 0.558],
     [0.128, 0.567, 0.551],
-    [0.267, 0.679, 0.480],
-    [0.478, 0.821, 0.319],
+    [0.158, 0.684, 0.502],
+    [0.369, 0.789, 0.383],
+    [0.678, 0.864, 0.190],
     [0.993, 0.906, 0.144],
 ];
 /// Width of the bar and the gap before it, points.
@@ -77,13 +77,13 @@ const SHAPE: f64 = 0.82;
 const FOOT: f64 = 23.0;
 
 /// One side, laid out: where each cell begins and ends, 0 to 1.
-struct Side<'a> {
+struct MapSide<'a> {
     axis: &'a MapAxis,
     ruler: Ruler,
     edges: Vec<f64>,
 }
 
-impl<'a> Side<'a> {
+impl<'a> MapSide<'a> {
     fn new(axis: &'a MapAxis) -> Self {
         // Positions before the axis is laid out: logarithms where it is logarithmic.
         let logarithmic = axis.scale == Scale::Log && axis.values.iter().all(|value| *value > 0.0);
@@ -115,7 +115,7 @@ impl<'a> Side<'a> {
     }
 }
 
-impl Default for Map {
+impl Default for HeatMap {
     fn default() -> Self {
         Self {
             title: String::new(),
@@ -132,11 +132,11 @@ impl Default for Map {
     }
 }
 
-impl Map {
+impl HeatMap {
     /// The map as SVG.
     pub fn svg(&self) -> String {
         let sheet = points(self.width);
-        let (across, up) = (Side::new(&self.across), Side::new(&self.up));
+        let (across, up) = (MapSide::new(&self.across), MapSide::new(&self.up));
         let bar = self.bar();
         let up_ticks = up.ticks(8);
         let bar_ticks = bar.ticks(6);
@@ -211,7 +211,7 @@ impl Map {
     fn cells(
         &self,
         svg: &mut Svg,
-        [across, up]: [&Side<'_>; 2],
+        [across, up]: [&MapSide<'_>; 2],
         bar: &Ruler,
         [left, top, wide, high]: [f64; 4],
     ) {
@@ -236,7 +236,7 @@ impl Map {
         }
     }
 
-    fn draw_lines(&self, svg: &mut Svg, [across, up]: [&Side<'_>; 2], [left, top, wide, high]: [f64; 4]) {
+    fn draw_lines(&self, svg: &mut Svg, [across, up]: [&MapSide<'_>; 2], [left, top, wide, high]: [f64; 4]) {
         for line in &self.lines {
             let dashes = match line.stroke {
                 Stroke::Dashed => " stroke-dasharray=\"4 2.4\"",
@@ -292,8 +292,8 @@ const INK: Rgb = [0.118, 0.118, 0.133];
 mod tests {
     use super::*;
 
-    fn map() -> Map {
-        Map {
+    fn map() -> HeatMap {
+        HeatMap {
             across: MapAxis { label: "k".to_owned(), values: vec![1.0, 2.0, 3.0], ..MapAxis::default() },
             up: MapAxis {
                 label: "ε (s)".to_owned(),
@@ -303,7 +303,7 @@ mod tests {
             },
             cells: vec![0.0, 0.5, 1.0, 0.25, f64::NAN, 0.75],
             range: Some([0.0, 1.0]),
-            ..Map::default()
+            ..HeatMap::default()
         }
     }
 
@@ -318,18 +318,18 @@ mod tests {
     fn cells_have_the_colours_of_their_values() {
         let svg = map().svg();
         let fills = fills(&svg);
-        assert_eq!(fills[..6], ["#440154", "#20918d", "#fde725", "#414387", NONE, "#44ad7a"].map(|c| c));
-        let turned = Map { reversed: true, ..map() }.svg();
+        assert_eq!(fills[..6], ["#440154", "#21918d", "#fde725", "#3b528b", NONE, "#5ec962"]);
+        let turned = HeatMap { reversed: true, ..map() }.svg();
         assert!(turned.find("#fde725") < turned.find("#440154"));
     }
 
     #[test]
     fn sides_are_cut_between_values() {
         let side = map().across;
-        let laid = Side::new(&side);
+        let laid = MapSide::new(&side);
         assert!(laid.edges.iter().zip([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0]).all(|(a, b)| (a - b).abs() < 1e-12));
         let side = map().up;
-        assert!((Side::new(&side).edges[1] - 0.5).abs() < 1e-12);
+        assert!((MapSide::new(&side).edges[1] - 0.5).abs() < 1e-12);
     }
 
     #[test]
@@ -340,11 +340,12 @@ mod tests {
             names: vec!["car".into(), "unicycle".into()],
             ..MapAxis::default()
         };
-        let svg = Map { across: one.clone(), up: named, cells: vec![1.0, 2.0], ..Map::default() }.svg();
+        let svg =
+            HeatMap { across: one.clone(), up: named, cells: vec![1.0, 2.0], ..HeatMap::default() }.svg();
         assert!(svg.contains(">unicycle<") && fills(&svg).len() > 2);
-        assert!(Map::default().svg().contains("</svg>"));
+        assert!(HeatMap::default().svg().contains("</svg>"));
         let line =
             MapLine { name: "edge".into(), points: vec![[1.0, 0.001], [3.0, 0.01]], ..MapLine::default() };
-        assert!(Map { lines: vec![line], ..map() }.svg().contains(">edge<"));
+        assert!(HeatMap { lines: vec![line], ..map() }.svg().contains(">edge<"));
     }
 }

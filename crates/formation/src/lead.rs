@@ -51,6 +51,11 @@ impl Trajectory for AnalyticTrajectory {
         MotionInput { speed, acceleration, turn_rate, turn_acceleration }
     }
 
+    fn steady(&self) -> Option<MotionInput> {
+        let constant = |what: &ScalarTrajectory| matches!(what, ScalarTrajectory::Constant(_));
+        (constant(&self.speed) && constant(&self.turn_rate)).then(|| self.at(0.0))
+    }
+
     fn ranges(&self) -> Option<[[f64; 2]; 2]> {
         Some([self.speed.range(), self.turn_rate.range()])
     }
@@ -68,6 +73,10 @@ pub struct Delayed {
 impl Trajectory for Delayed {
     fn at(&self, time: f64) -> MotionInput {
         self.motion.at(time - self.by)
+    }
+
+    fn steady(&self) -> Option<MotionInput> {
+        self.motion.steady()
     }
 
     fn ranges(&self) -> Option<[[f64; 2]; 2]> {

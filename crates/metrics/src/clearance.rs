@@ -40,8 +40,13 @@ struct Hull {
     reach: f64,
     /// Half its height while it stands upright, m.
     half_height: f64,
+    /// Half its sides, if it is a box.
+    half: Option<Vector>,
     frame: Isometry,
 }
+
+/// Room for rounding where a bound decides that two bodies are not measured, m.
+const SLACK: f64 = 1e-9;
 
 impl Clearance {
     /// For a run of `fleet`.
@@ -72,7 +77,8 @@ impl Clearance {
                     break;
                 }
                 let limit = known(least, i).max(known(least, j));
-                if limit <= 0.0 || a.at_least(b) >= limit || a.drives_over(b) || b.drives_over(a) {
+                let apart = || a.at_least(b) >= limit || a.separation(b) >= limit + SLACK;
+                if limit <= 0.0 || apart() || a.drives_over(b) || b.drives_over(a) {
                     continue;
                 }
                 let clearance = a.distance(b);
@@ -115,6 +121,7 @@ impl Hull {
             inside: Isometry::from_translation(Vector::new(0.5 * body.wheelbase, 0.0, 0.5 * body.height)),
             reach: half.length(),
             half_height: half.z,
+            half: Some(half),
             frame: Isometry::identity(),
         }
     }
@@ -142,6 +149,7 @@ impl Hull {
             inside,
             reach,
             half_height: 0.5 * h,
+            half: matches!(solid, Solid::Block { .. }).then(|| Vector::new(0.5 * l, 0.5 * w, 0.5 * h)),
             frame: Isometry::identity(),
         })
     }
@@ -174,6 +182,23 @@ impl Hull {
     /// A lower bound of the distance, m.
     fn at_least(&self, other: &Self) -> f64 {
         (self.frame.translation - other.frame.translation).length() - self.reach - other.reach
+    }
+
+    /// A better lower bound of the distance of two boxes, m: how far apart they are along one of their own axes.
+    fn separation(&self, other: &Self) -> f64 {
+        let (Some(a), Some(b)) = (self.half, other.half) else { return f64::NEG_INFINITY };
+        let between = other.frame.translation - self.frame.translation;
+        let axes = |hull: &Self| [Vector::X, Vector::Y, Vector::Z].map(|axis| hull.frame.rotation * axis);
+        let (own, others) = (axes(self), axes(other));
+        let reach = |axes: &[Vector; 3], half: Vector, along: Vector| {
+            let [x, y, z] = axes.map(|axis| axis.dot(along).abs());
+            x * half.x + y * half.y + z * half.z
+        };
+        let along = own
+            .iter()
+            .chain(&others)
+            .map(|axis| between.dot(*axis).abs() - reach(&own, a, *axis) - reach(&others, b, *axis));
+        along.fold(f64::NEG_INFINITY, f64::max)
     }
 
     fn distance(&self, other: &Self) -> f64 {
@@ -306,6 +331,21 @@ mod tests {
     }
 
     proptest! {
+        /// What bounds say of two boxes is never more than their distance, also where they are tilted.
+        #[test]
+        fn bounds_are_below_the_distance(x in -1.0..1.0, y in -1.0..1.0, z in -1.0..1.0, turns in [-3.0..3.0, -3.0..3.0, -3.0..3.0]) {
+            let [mut a, mut b] = [0, 1].map(|k| Hull::robot(k, &BODY));
+            let turn = |[r, p, y]: [f64; 3]| {
+                Rotation::from_rotation_z(y) * Rotation::from_rotation_y(p) * Rotation::from_rotation_x(r)
+            };
+            (a.frame, b.frame) = (Isometry::identity(), Isometry::from_parts(Vector::new(x, y, z), turn(turns)));
+            let distance = a.distance(&b);
+            prop_assert!(a.at_least(&b) <= distance + 1e-9 && a.separation(&b) <= distance + 1e-9);
+            // Along an axis of the first there is nothing to lose.
+            b.frame = Isometry::from_translation(Vector::new(1.0 + x.abs(), 0.0, 0.0));
+            prop_assert!((a.separation(&b) - a.distance(&b)).abs() < 1e-9);
+        }
+
         /// The sweep finds what trying all pairs finds, for every robot.
         #[test]
         fn sweeping_equals_trying_all(poses in proptest::collection::vec((-3.0..3.0, -3.0..3.0, -3.0..3.0), 2..12)) {

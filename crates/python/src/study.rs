@@ -8,9 +8,9 @@ use crate::watch::detached;
 use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict, PyList, PyMapping, PyString, PyType};
-use scene::{Parameter, Sampling, Scatter, Study, Values};
+use scene::{FollowerScatter, Sampling, Study, StudyParameter, Values};
 use std::path::PathBuf;
-use sweeps::{Error, Experiment, Progressed, Row, RowTable, run_all};
+use sweeps::{Error, Experiment, Progressed, RowTable, RunRow, run_all};
 use vocabulary::Word;
 
 /// Many runs of a scene that differ. It does not change, and can be pickled.
@@ -55,12 +55,12 @@ impl PyStudy {
         [start, stop]: [u64; 2],
         threads: Option<usize>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<Vec<Row>> {
+    ) -> PyResult<Vec<RunRow>> {
         let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         let threads = threads.unwrap_or_else(cores).clamp(1, 1024);
         let count = stop - start;
         let rows = detached(py, progress, count, |watch| {
-            let mut rows: Vec<Row> = vec![];
+            let mut rows: Vec<RunRow> = vec![];
             let clock = || watch.seconds();
             run_all(&self.experiment, start..stop, threads, &clock, |event| {
                 if let Progressed::Ended(row) = event {
@@ -132,23 +132,23 @@ impl PyStudy {
     /// ValueError
     ///     Where keys or values are none, or contradict each other.
     #[new]
-    #[pyo3(signature = (scene, vary=None, *, seeds=1, samples=1, sampling="independent", seed=1, scatter=(0.0, 0.0), title=None))]
+    #[pyo3(signature = (scene, vary=None, *, seeds=1, samples=1, sampling="independent", seed=1, scatter=[0.0, 0.0], title=None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-    fn new(
+    fn __new__(
         scene: &PyScene,
         vary: Option<&Bound<'_, PyMapping>>,
         seeds: u64,
         samples: u64,
         sampling: &str,
         seed: u64,
-        scatter: (f64, f64),
+        scatter: [f64; 2],
         title: Option<String>,
     ) -> PyResult<Self> {
         let known = Sampling::WORDS.iter().find(|(word, ..)| *word == sampling);
         let (_, sampling, _) = known.ok_or_else(|| {
             PyValueError::new_err("sampling is \"independent\", \"latin-hypercube\" or \"sobol\"")
         })?;
-        let (position, heading) = scatter;
+        let [position, heading] = scatter;
         let finite = [position, heading].iter().all(|number| (0.0..=1000.0).contains(number));
         if !finite || seeds == 0 || samples == 0 || i64::try_from(seed).is_err() {
             return Err(PyValueError::new_err(
@@ -156,11 +156,12 @@ impl PyStudy {
             ));
         }
         let mut parameters = vec![];
-        for item in vary.map(|vary| vary.items()).transpose()?.iter().flat_map(|items| items.iter()) {
+        let items = vary.map(PyMappingMethods::items).transpose()?;
+        for item in items.iter().flat_map(PyListMethods::iter) {
             let (key, given): (String, Bound<'_, PyAny>) =
                 item.extract().map_err(|_| PyTypeError::new_err("keys of a scene are texts"))?;
             let values = values(&key, &given)?;
-            parameters.push(Parameter { key, values });
+            parameters.push(StudyParameter { key, values });
         }
         let SceneSource { text, path } = scene.source()?;
         let study = Study {
@@ -170,7 +171,7 @@ impl PyStudy {
             sampling: *sampling,
             set: scene.sets().to_vec(),
             parameters,
-            scatter: Scatter { position, heading },
+            scatter: FollowerScatter { position, heading },
             ..Study::of_scene(
                 &path.display().to_string(),
                 &title.unwrap_or_else(|| scene.scene().title.clone()),
@@ -186,8 +187,8 @@ impl PyStudy {
     /// path : path
     ///     The file.
     #[classmethod]
-    fn load(_class: &Bound<'_, PyType>, path: PathBuf) -> PyResult<Self> {
-        let study = Study::load(&path).map_err(|faults| of_diagnostics(&faults))?;
+    fn load(_class: &Bound<'_, PyType>, path: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let study = Study::load(&path.extract::<PathBuf>()?).map_err(|faults| of_diagnostics(&faults))?;
         Self::checked(Experiment::new(study).map_err(|error| of_sweep(&error))?)
     }
 
@@ -210,6 +211,7 @@ impl PyStudy {
         self.experiment.study().runs()
     }
 
+    /// Runs of the study.
     fn __len__(&self) -> usize {
         usize::try_from(self.runs()).unwrap_or(usize::MAX)
     }

@@ -112,7 +112,7 @@ fn documented(stubs: &str, docs: &mut Docs) -> String {
 #[test]
 fn the_stubs_have_every_method_with_its_documentation() {
     let mut docs = Docs::new();
-    for source in ["copies", "program", "scene", "run", "simulation", "table"] {
+    for source in ["copies", "program", "scene", "run", "simulation", "study", "table"] {
         read(
             &fs::read_to_string(root().join("src").join(source).with_extension("rs")).expect("a file"),
             &mut docs,

@@ -55,8 +55,8 @@ pub use load::{Loaded, schema};
 pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, scene_name, shipped};
 pub use study::{
-    Distribution, MOST_RUNS, Parameter, Sampling, Scatter, Study, StudyFault, ValueScale, Values,
-    ValuesError, value_text,
+    Distribution, FollowerScatter, MOST_RUNS, Sampling, Study, StudyFault, StudyParameter, ValueScale,
+    Values, ValuesError, value_text,
 };
 pub use text::node::composed;
 pub use types::{

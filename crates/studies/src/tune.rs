@@ -4,6 +4,7 @@
 //! 1 rad s, commands that a limit cut against a tenth of the samples, and a hundred for every contact, robot that can
 //! drive no more, or law that breaks off. The search goes over logarithms, since gains multiply, and begins at the scene's own gains.
 
+use crate::copies::{Episode, StartScatter};
 use cobyla::{RhoBeg, StopTols, minimize};
 use metrics::{Metrics, MetricsBuilder};
 use scene::{Follow, Role, Scene, WrittenLaw};
@@ -40,12 +41,26 @@ pub struct Trial {
     pub contacts: usize,
 }
 
+/// What a trial runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TuneEffort {
+    /// Largest number of trials.
+    pub most: usize,
+    /// Runs of a trial, each with a seed of its own: gains have to hold over all of them.
+    pub seeds: u64,
+    /// Where followers start in each.
+    pub scatter: StartScatter,
+}
+
 /// Why no gains were found.
 #[derive(Debug, Error)]
 pub enum TuneError {
     /// The scene cannot run.
     #[error(transparent)]
     Build(#[from] BuildError),
+    /// Robots have no room to start as they are asked to.
+    #[error("{0}")]
+    Scatter(String),
     /// Nobody follows by output feedback or by a custom law with parameters.
     #[error(
         "no robot of the scene follows by `output-feedback`, or by a custom law with parameters: there are no such gains to find"
@@ -132,27 +147,41 @@ impl<'a> Search<'a> {
         });
     }
 
-    /// Runs the scene with some values.
-    fn trial(&self, scene: &Scene, values: &[f64]) -> Result<Trial, BuildError> {
-        let mut scene = scene.clone();
-        self.give(values, &mut scene);
-        let mut simulation = Simulation::new(build(&scene)?);
-        let mut metrics = MetricsBuilder::new(simulation.fleet(), scene.judging());
-        while let Some(record) = simulation.next_record() {
-            metrics.push(record);
+    /// Runs the scene with some values, once for each seed: costs are their mean, all else is of the worst.
+    fn trial(&self, scene: &Scene, values: &[f64], effort: &TuneEffort) -> Result<Trial, TuneError> {
+        let gains = self.knobs.iter().map(|knob| knob.name.clone()).zip(values.iter().copied()).collect();
+        let mut trial = Trial { gains, cost: 0.0, late_error: [0.0; 2], limited: 0.0, contacts: 0 };
+        for number in 0..effort.seeds {
+            let mut scene = scene.clone();
+            self.give(values, &mut scene);
+            // The first run is the scene's own where nothing is scattered.
+            let episode = Episode { seed: scene.seed, number };
+            effort
+                .scatter
+                .scatter(&mut scene, episode)
+                .map_err(|error| TuneError::Scatter(error.to_string()))?;
+            let metrics = run(&scene)?;
+            trial.cost += cost(&metrics) / effort.seeds as f64;
+            trial.contacts += metrics.contacts;
+            for edge in &metrics.edges {
+                trial.limited = trial.limited.max(edge.limited);
+                for (worst, error) in trial.late_error.iter_mut().zip(edge.late_peak_error) {
+                    *worst = worst.max(error);
+                }
+            }
         }
-        let metrics = metrics.finish();
-        let largest = |channel: usize| {
-            metrics.edges.iter().map(|edge| edge.late_peak_error[channel]).fold(0.0, f64::max)
-        };
-        Ok(Trial {
-            gains: self.knobs.iter().map(|knob| knob.name.clone()).zip(values.iter().copied()).collect(),
-            cost: cost(&metrics),
-            late_error: [largest(0), largest(1)],
-            limited: metrics.edges.iter().map(|edge| edge.limited).fold(0.0, f64::max),
-            contacts: metrics.contacts,
-        })
+        Ok(trial)
     }
+}
+
+/// The metrics of a run.
+fn run(scene: &Scene) -> Result<Metrics, BuildError> {
+    let mut simulation = Simulation::new(build(scene)?);
+    let mut metrics = MetricsBuilder::new(simulation.fleet(), scene.judging());
+    while let Some(record) = simulation.next_record() {
+        metrics.push(record);
+    }
+    Ok(metrics.finish())
 }
 
 impl Knob {
@@ -192,14 +221,17 @@ pub fn tuned(scene: &Scene) -> Option<(String, Vec<&str>)> {
     Some((law.to_owned(), names))
 }
 
-/// Tries the scene's own gains first and then at most `most` others; `look` sees every trial and says whether to go on.
-/// What comes back is that first trial and the best of all.
+/// Tries the scene's own gains first and then others; `look` sees every trial and says whether to go on. What comes back is that first trial and the best of all.
 ///
 /// # Errors
 /// [`TuneError`] where the scene cannot run or has no follower with gains to be found.
-pub fn tune(scene: &Scene, most: usize, look: impl FnMut(&Trial) -> bool) -> Result<[Trial; 2], TuneError> {
+pub fn tune(
+    scene: &Scene,
+    effort: &TuneEffort,
+    look: impl FnMut(&Trial) -> bool,
+) -> Result<[Trial; 2], TuneError> {
     let search = Search::of(scene).ok_or(TuneError::NothingToTune)?;
-    let first = search.trial(scene, &search.starts[0])?;
+    let first = search.trial(scene, &search.starts[0], effort)?;
     let seen = RefCell::new(Seen { best: first.clone(), look, on: true });
     seen.borrow_mut().take_in(first.clone());
     let cost = |at: &[f64], (): &mut ()| {
@@ -208,7 +240,7 @@ pub fn tune(scene: &Scene, most: usize, look: impl FnMut(&Trial) -> bool) -> Res
             return f64::MAX;
         }
         let values: Vec<f64> = search.knobs.iter().zip(at).map(|(knob, at)| knob.value(*at)).collect();
-        let Ok(trial) = search.trial(scene, &values) else { return f64::MAX };
+        let Ok(trial) = search.trial(scene, &values, effort) else { return f64::MAX };
         let cost = trial.cost;
         seen.borrow_mut().take_in(trial);
         cost
@@ -219,7 +251,7 @@ pub fn tune(scene: &Scene, most: usize, look: impl FnMut(&Trial) -> bool) -> Res
     let tolerances = StopTols { xtol_rel: 1e-2, ..StopTols::default() };
     for start in &search.starts {
         let no_constraints: [fn(&[f64], &mut ()) -> f64; 0] = [];
-        let share = (most / search.starts.len()).max(1);
+        let share = (effort.most / search.starts.len()).max(1);
         let from: Vec<f64> = search.knobs.iter().zip(start).map(|(knob, value)| knob.seen(*value)).collect();
         // It ends by its tolerance or by the number of trials; the best that was seen counts either way.
         let _ = minimize(
@@ -269,6 +301,10 @@ fn cost(metrics: &Metrics) -> f64 {
 mod tests {
     use super::*;
 
+    fn effort(most: usize) -> TuneEffort {
+        TuneEffort { most, seeds: 1, scatter: StartScatter::default() }
+    }
+
     fn scene(text: &str) -> Scene {
         Scene::parse(text, "tune.toml", &[]).expect("a scene").scene
     }
@@ -281,7 +317,7 @@ mod tests {
         let follower = "[law]\nk = 5.0\nbeta = 5.0\nslope = 24.53\n[observer]\nepsilon = 0.02\n[[robots]]\nname = \"b\"\n\
             pose = [-2, -1, 0]\nspeed = 0.8\nleader = \"a\"\ndistance = 2.0\nbearing = \"-135 deg\"\n";
         let mut trials = 0;
-        let [first, best] = tune(&scene(&format!("{HEAD}{follower}")), 30, |_| {
+        let [first, best] = tune(&scene(&format!("{HEAD}{follower}")), &effort(30), |_| {
             trials += 1;
             true
         })
@@ -304,15 +340,34 @@ mod tests {
              distance = 2.0\nbearing = \"-135 deg\"\n",
             HEAD.replace("vehicle = \"car\"\n", "")
         );
-        let [first, best] = tune(&scene(&text), 40, |_| true).expect("gains");
+        let [first, best] = tune(&scene(&text), &effort(40), |_| true).expect("gains");
         assert_eq!((first.gains["k"], first.gains["d"]), (0.4, 0.5));
         assert!(best.cost < 0.5 * first.cost, "{first:?} {best:?}");
         assert!((0.2..=6.0).contains(&best.gains["k"]) && (0.1..=2.0).contains(&best.gains["d"]));
     }
 
+    /// A trial of several seeds is as good as their mean and as bad as their worst.
+    #[test]
+    fn gains_are_judged_by_all_their_runs() {
+        let follower = "[sensing]\nkind = \"noise\"\n[[robots]]\nname = \"b\"\npose = [-2, -1, 0]\nspeed = 0.8\nleader = \"a\"\n\
+            distance = 2.0\nbearing = \"-135 deg\"\n";
+        let scene = scene(&format!("{HEAD}{follower}"));
+        let search = Search::of(&scene).expect("a search");
+        let scatter = StartScatter { robots: vec![1], position: 0.3, heading: 0.2 };
+        let trial = |seeds: u64| {
+            let all = TuneEffort { seeds, scatter: scatter.clone(), ..effort(4) };
+            search.trial(&scene, &search.starts[0], &all).expect("a trial")
+        };
+        let one = trial(1);
+        let three = trial(3);
+        assert_ne!(one.cost, three.cost);
+        assert!(three.late_error[0] >= one.late_error[0] && three.late_error[1] >= one.late_error[1]);
+        assert_eq!(three, trial(3));
+    }
+
     #[test]
     fn a_scene_without_output_feedback_has_nothing_to_tune() {
-        assert!(matches!(tune(&scene(HEAD), 5, |_| true), Err(TuneError::NothingToTune)));
+        assert!(matches!(tune(&scene(HEAD), &effort(5), |_| true), Err(TuneError::NothingToTune)));
     }
 
     #[test]
@@ -320,7 +375,7 @@ mod tests {
         let follower = "[[robots]]\nname = \"b\"\npose = [-2, -1, 0]\nspeed = 0.8\nleader = \"a\"\ndistance = 2.0\n\
             bearing = \"-135 deg\"\n";
         let mut trials = 0;
-        let _ = tune(&scene(&format!("{HEAD}{follower}")), 300, |_| {
+        let _ = tune(&scene(&format!("{HEAD}{follower}")), &effort(300), |_| {
             trials += 1;
             trials < 3
         });

@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The search for the edge of the runs that meet their expectations, over one or two varied keys.
 #[derive(Debug, Clone)]
-pub struct Boundary {
+pub struct BoundarySearch {
     /// Cells along each axis; one of a single cell where only one key varies.
     lens: [u64; 2],
     /// Side of the squares that are looked at, in cells; it is halved with every round.
@@ -21,7 +21,7 @@ pub struct Boundary {
 /// Squares along the longer side, at first.
 const FIRST: u64 = 8;
 
-impl Boundary {
+impl BoundarySearch {
     /// Over the keys that vary on a grid; `None` where these are none or more than two, or numbers are drawn.
     pub fn new(design: &Design) -> Option<Self> {
         let lens = match design.axes() {
@@ -126,16 +126,16 @@ impl Boundary {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{Parameter, Study};
+    use scene::{Study, StudyParameter};
 
-    fn search(keys: &[(&str, &str)], met: impl Fn(f64, f64) -> bool) -> (Boundary, Design) {
-        let parameter = |(key, values): &(&str, &str)| Parameter {
+    fn search(keys: &[(&str, &str)], met: impl Fn(f64, f64) -> bool) -> (BoundarySearch, Design) {
+        let parameter = |(key, values): &(&str, &str)| StudyParameter {
             key: (*key).to_owned(),
             values: values.parse().expect("values"),
         };
         let parameters = keys.iter().map(parameter).collect();
         let design = Design::new(Study { parameters, ..Study::of_scene("circle-three", "t") });
-        let mut boundary = Boundary::new(&design).expect("one or two keys");
+        let mut boundary = BoundarySearch::new(&design).expect("one or two keys");
         loop {
             let wanted = boundary.wanted();
             if wanted.is_empty() {
@@ -184,14 +184,14 @@ mod tests {
     #[test]
     fn drawn_and_many_keys_have_none() {
         let design = |values: &[&str]| {
-            let parameter = |(k, values): (usize, &&str)| Parameter {
+            let parameter = |(k, values): (usize, &&str)| StudyParameter {
                 key: format!("a.k{k}"),
                 values: values.parse().expect("values"),
             };
             let parameters = values.iter().enumerate().map(parameter).collect();
             Design::new(Study { parameters, ..Study::of_scene("circle-three", "t") })
         };
-        assert!(Boundary::new(&design(&["uniform:0..1"])).is_none());
-        assert!(Boundary::new(&design(&["1,2", "1,2", "1,2"])).is_none());
+        assert!(BoundarySearch::new(&design(&["uniform:0..1"])).is_none());
+        assert!(BoundarySearch::new(&design(&["1,2", "1,2", "1,2"])).is_none());
     }
 }

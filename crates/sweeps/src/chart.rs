@@ -1,10 +1,10 @@
 //! Figures of a study: curves over one varied key, maps over two.
 
-use crate::design::{Axis as DesignAxis, Design};
+use crate::design::{Design, DesignAxis};
 use crate::interval::wilson;
 use crate::measure::MEASURES;
-use crate::summary::{CellSummary, Summary};
-use figures::{Axis, Figure, Map, MapAxis, MapLine, Panel, Scale, Series};
+use crate::summary::{CellSummary, StudySummary};
+use figures::{Axis, Figure, HeatMap, MapAxis, MapLine, Panel, Scale, Series};
 use scene::{ValueScale, Values};
 
 /// A figure of a study.
@@ -25,9 +25,13 @@ const MET: &str = "share that meets its expectations";
 const MOST_DRAWN: u64 = 2000;
 
 /// The figures of a study; none where nothing varies that lies on an axis. `lines` are drawn over maps of the first two keys.
-pub fn charts(design: &Design, summary: &Summary, lines: &[MapLine]) -> Vec<StudyFigure> {
-    let sides: Vec<(usize, Side)> =
-        design.axes().iter().enumerate().filter_map(|(k, axis)| Some((k, Side::of(design, axis)?))).collect();
+pub fn charts(design: &Design, summary: &StudySummary, lines: &[MapLine]) -> Vec<StudyFigure> {
+    let sides: Vec<(usize, ChartSide)> = design
+        .axes()
+        .iter()
+        .enumerate()
+        .filter_map(|(k, axis)| Some((k, ChartSide::of(design, axis)?)))
+        .collect();
     match &sides[..] {
         [] => vec![],
         [(_, side)] => vec![curves(design, summary, side)],
@@ -49,12 +53,12 @@ pub fn charts(design: &Design, summary: &Summary, lines: &[MapLine]) -> Vec<Stud
 
 /// A varied key as an axis.
 #[derive(Debug, Clone)]
-struct Side {
+struct ChartSide {
     key: String,
     axis: MapAxis,
 }
 
-impl Side {
+impl ChartSide {
     /// Of keys that go together the first; `None` where it has one value, or too many.
     fn of(design: &Design, axis: &DesignAxis) -> Option<Self> {
         let parameter = design.study().parameters.get(*axis.parameters.first()?)?;
@@ -87,9 +91,9 @@ impl Side {
 /// The sides between neighbouring cells of a map as a line over it; `None` where the study has no map.
 pub fn edge_line(design: &Design, pairs: &[[u64; 2]]) -> Option<MapLine> {
     let [across, up] = design.axes() else { return None };
-    let sides = [Side::of(design, across)?, Side::of(design, up)?];
+    let sides = [ChartSide::of(design, across)?, ChartSide::of(design, up)?];
     // Halfway to a neighbour as the axis lies.
-    let halfway = |side: &Side, place: i64, by: i64| {
+    let halfway = |side: &ChartSide, place: i64, by: i64| {
         let values = &side.axis.values;
         let last = values.len() as i64 - 1;
         let at = |k: i64| values[k.clamp(0, last) as usize];
@@ -122,7 +126,7 @@ fn number(text: &str) -> Option<f64> {
 }
 
 /// Cells summed over all other keys: what is left is a value for each place along some axes.
-fn shares(design: &Design, summary: &Summary, axes: &[usize]) -> Vec<CellSummary> {
+fn shares(design: &Design, summary: &StudySummary, axes: &[usize]) -> Vec<CellSummary> {
     let lens: Vec<u64> = axes.iter().filter_map(|axis| Some(design.axes().get(*axis)?.len)).collect();
     let none = CellSummary { runs: 0, met: 0, with_contacts: 0, quantiles: vec![], ..empty() };
     let mut all = vec![none; lens.iter().product::<u64>() as usize];
@@ -157,7 +161,7 @@ fn empty() -> CellSummary {
 
 const BLUE: figures::Rgb = [0.0, 0.447, 0.698];
 
-fn curves(design: &Design, summary: &Summary, side: &Side) -> StudyFigure {
+fn curves(design: &Design, summary: &StudySummary, side: &ChartSide) -> StudyFigure {
     let which = design.axes().iter().position(|axis| {
         axis.parameters
             .first()
@@ -204,29 +208,29 @@ fn curves(design: &Design, summary: &Summary, side: &Side) -> StudyFigure {
     StudyFigure { stem: "curves".to_owned(), caption, svg: figure.svg() }
 }
 
-fn map(design: &Design, [across, up]: [&Side; 2], cells: &[f64], label: &str) -> Map {
+fn map(design: &Design, [across, up]: [&ChartSide; 2], cells: &[f64], label: &str) -> HeatMap {
     // The first key is the slower: its places are columns of the map, and a map has its cells row by row.
     let (columns, rows) = (across.axis.values.len(), up.axis.values.len());
     let turned = (0..rows).flat_map(|row| (0..columns).map(move |column| column * rows + row));
-    Map {
+    HeatMap {
         title: design.study().title.clone(),
         across: across.axis.clone(),
         up: up.axis.clone(),
         cells: turned.map(|place| cells.get(place).copied().unwrap_or(f64::NAN)).collect(),
         label: label.to_owned(),
-        ..Map::default()
+        ..HeatMap::default()
     }
 }
 
 fn map_of_share(
     design: &Design,
-    summary: &Summary,
+    summary: &StudySummary,
     axes: [usize; 2],
-    sides: [&Side; 2],
+    sides: [&ChartSide; 2],
     lines: &[MapLine],
 ) -> StudyFigure {
     let cells: Vec<f64> = shares(design, summary, &axes).iter().map(|cell| cell.share).collect();
-    let map = Map { range: Some([0.0, 1.0]), lines: lines.to_vec(), ..map(design, sides, &cells, MET) };
+    let map = HeatMap { range: Some([0.0, 1.0]), lines: lines.to_vec(), ..map(design, sides, &cells, MET) };
     let others = design.axes().len() - 2;
     let over = if others == 0 { String::new() } else { ", over all values of the other keys".to_owned() };
     let caption = format!("The {MET}, over {} and {}{over}.", sides[0].key, sides[1].key);
@@ -235,9 +239,9 @@ fn map_of_share(
 
 fn map_of_measure(
     design: &Design,
-    summary: &Summary,
+    summary: &StudySummary,
     axes: [usize; 2],
-    sides: [&Side; 2],
+    sides: [&ChartSide; 2],
     which: usize,
 ) -> Option<StudyFigure> {
     let measure = MEASURES.get(which)?;
@@ -251,7 +255,7 @@ fn map_of_measure(
         / cells.iter().filter(|v| v.is_finite() && **v > 0.0).fold(f64::INFINITY, |a, b| a.min(*b));
     let scale = if ratio > 100.0 { Scale::Log } else { Scale::Linear };
     let reversed = measure.column != "clearance_min_m";
-    let map = Map { scale, reversed, ..map(design, sides, &cells, measure.label) };
+    let map = HeatMap { scale, reversed, ..map(design, sides, &cells, measure.label) };
     let caption = format!(
         "Median of {}, over {} and {}; crosses: no run has it.",
         measure.label, sides[0].key, sides[1].key
@@ -263,12 +267,12 @@ fn map_of_measure(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::row::{Row, RowStatus};
+    use crate::row::{RowStatus, RunRow};
     use crate::summary::SummaryBuilder;
-    use scene::{Parameter, Study};
+    use scene::{Study, StudyParameter};
 
     fn figures(keys: &[(&str, &str)], seeds: u64) -> Vec<StudyFigure> {
-        let parameter = |(key, values): &(&str, &str)| Parameter {
+        let parameter = |(key, values): &(&str, &str)| StudyParameter {
             key: (*key).to_owned(),
             values: values.parse().expect("values"),
         };
@@ -276,7 +280,7 @@ mod tests {
         let design = Design::new(Study { parameters, seeds, ..Study::of_scene("circle-three", "A study") });
         let mut builder = SummaryBuilder::new(&design, 0);
         for index in 0..design.study().runs() {
-            let mut row = Row::of(design.point(index), RowStatus::Complete, String::new());
+            let mut row = RunRow::of(design.point(index), RowStatus::Complete, String::new());
             row.met = index % 3 == 0;
             row.measures = vec![index as f64; MEASURES.len()];
             builder.push(row);

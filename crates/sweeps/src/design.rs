@@ -2,19 +2,19 @@
 
 use crate::sampling::Sampler;
 use laws::Noise;
-use scene::{Override, Parameter, Study, Values};
+use scene::{Override, Study, StudyParameter, Values};
 
 /// The runs of a study, counted from 0: seeds within samples within cells, the last varied key before the others.
 #[derive(Debug, Clone)]
 pub struct Design {
     study: Study,
-    axes: Vec<Axis>,
+    axes: Vec<DesignAxis>,
     sampler: Sampler,
 }
 
 /// Keys whose values go together.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Axis {
+pub struct DesignAxis {
     /// Which of the study's keys.
     pub parameters: Vec<usize>,
     /// How many values each has.
@@ -39,16 +39,16 @@ pub struct RunPoint {
 impl Design {
     /// Of a study without faults.
     pub fn new(study: Study) -> Self {
-        let mut axes: Vec<Axis> = vec![];
+        let mut axes: Vec<DesignAxis> = vec![];
         let mut zipped: Option<usize> = None;
-        for (index, Parameter { values, .. }) in study.parameters.iter().enumerate() {
+        for (index, StudyParameter { values, .. }) in study.parameters.iter().enumerate() {
             match values {
                 Values::Grid { values, .. } => {
-                    axes.push(Axis { parameters: vec![index], len: values.len() as u64 });
+                    axes.push(DesignAxis { parameters: vec![index], len: values.len() as u64 });
                 }
                 Values::Zipped(values) => {
                     let axis = *zipped.get_or_insert_with(|| {
-                        axes.push(Axis { parameters: vec![], len: values.len() as u64 });
+                        axes.push(DesignAxis { parameters: vec![], len: values.len() as u64 });
                         axes.len() - 1
                     });
                     axes[axis].parameters.push(index);
@@ -66,7 +66,7 @@ impl Design {
     }
 
     /// The keys that span the cells, the slowest first.
-    pub fn axes(&self) -> &[Axis] {
+    pub fn axes(&self) -> &[DesignAxis] {
         &self.axes
     }
 
@@ -160,7 +160,7 @@ mod tests {
     use scene::Sampling;
 
     fn design(parameters: &[(&str, &str)], samples: u64, seeds: u64) -> Design {
-        let parameter = |(key, values): &(&str, &str)| Parameter {
+        let parameter = |(key, values): &(&str, &str)| StudyParameter {
             key: (*key).to_owned(),
             values: values.parse().expect("values"),
         };

@@ -3,7 +3,7 @@
 use crate::design::{Design, RunPoint};
 use crate::error::Error;
 use crate::measure::MEASURES;
-use crate::row::{Row, RowStatus};
+use crate::row::{RowStatus, RunRow};
 use recording::Status;
 use scene::{Diagnostics, Loaded, Override, Role, Scene, Study, StudyFault, Values, value_text};
 use std::any::Any;
@@ -169,24 +169,26 @@ impl Experiment {
     }
 
     /// Makes run `index`; `None` where `go_on` said no. `clock` tells seconds since any moment.
-    pub fn run(&self, index: u64, clock: &dyn Fn() -> f64, go_on: GoOn<'_>) -> Option<Row> {
+    pub fn run(&self, index: u64, clock: &dyn Fn() -> f64, go_on: GoOn<'_>) -> Option<RunRow> {
         let (point, began) = (self.design.point(index), clock());
         let limit = self.study().limit.unwrap_or(f64::INFINITY);
         let late = || clock() - began > limit;
         let made = catch_unwind(AssertUnwindSafe(|| self.judged(&point, &|| go_on() && !late())));
         let mut row = match made {
-            Ok(Made::Judged(judged)) if judged.status != Status::Interrupted => Row { point, ..row(&judged) },
+            Ok(Made::Judged(judged)) if judged.status != Status::Interrupted => {
+                RunRow { point, ..row(&judged) }
+            }
             Ok(Made::Judged(judged)) if late() => {
                 let reason = format!(
                     "the run took longer than {limit} s, at {:.2} s of its time",
                     judged.metrics.duration
                 );
                 let time = judged.metrics.duration;
-                Row { failed_time: time, ..Row::of(point, RowStatus::Expired, reason) }.with(&judged)
+                RunRow { failed_time: time, ..RunRow::of(point, RowStatus::Expired, reason) }.with(&judged)
             }
             Ok(Made::Judged(_)) => return None,
-            Ok(Made::Not(status, reason)) => Row::of(point, status, reason),
-            Err(payload) => Row::of(point, RowStatus::Panicked, message(payload.as_ref())),
+            Ok(Made::Not(status, reason)) => RunRow::of(point, status, reason),
+            Err(payload) => RunRow::of(point, RowStatus::Panicked, message(payload.as_ref())),
         };
         row.wall_time = clock() - began;
         Some(row)
@@ -204,7 +206,7 @@ impl Experiment {
         if run.simulation.needs_cameras() {
             return Made::Not(RowStatus::Refused, CAMERAS.to_owned());
         }
-        match studies::run::run(run, None, None, |_| go_on()) {
+        match studies::run::run_unexamined(run, |_| go_on()) {
             Ok(judged) => Made::Judged(Box::new(judged)),
             Err(error) => Made::Not(RowStatus::Broken, error.to_string()),
         }
@@ -224,9 +226,9 @@ enum Made {
 }
 
 /// What a row of a run that ended says, but for which run it is.
-fn row(judged: &JudgedRun) -> Row {
+fn row(judged: &JudgedRun) -> RunRow {
     let status = if judged.status == Status::Complete { RowStatus::Complete } else { RowStatus::Stopped };
-    let mut row = Row::of(RunPoint::default(), status, String::new()).with(judged);
+    let mut row = RunRow::of(RunPoint::default(), status, String::new()).with(judged);
     row.digest.clone_from(&judged.digest);
     let unmet = judged.findings.iter().filter(|finding| finding.failed());
     let timed = unmet.map(|finding| (failed_at(finding.key, judged), finding));
@@ -254,7 +256,7 @@ fn failed_at(key: &str, judged: &JudgedRun) -> f64 {
     found.unwrap_or(metrics.duration)
 }
 
-impl Row {
+impl RunRow {
     /// With the numbers of a run.
     fn with(self, judged: &JudgedRun) -> Self {
         let measures = MEASURES.iter().map(|measure| measure.of(&judged.metrics)).collect();

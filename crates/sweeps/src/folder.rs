@@ -11,7 +11,7 @@
 use crate::error::Error;
 use crate::experiment::Experiment;
 use crate::index_set::IndexSet;
-use crate::row::{Row, RowTable};
+use crate::row::{RowTable, RunRow};
 use output::{Claim, write_whole};
 use recording::{ParquetWriter, append_bytes, append_columns, parquet_bytes, read_mark};
 use scene::Study;
@@ -46,7 +46,7 @@ pub struct StudyFolder {
     manifest: StudyManifest,
     done: IndexSet,
     /// Rows that are not on the disk yet.
-    rows: BTreeMap<u64, Row>,
+    rows: BTreeMap<u64, RunRow>,
     table: RowTable,
     next_part: u64,
     _claim: Claim,
@@ -197,7 +197,7 @@ impl StudyFolder {
     ///
     /// # Errors
     /// [`Error`] where the disk does not take it.
-    pub fn push(&mut self, row: Row) -> Result<(), Error> {
+    pub fn push(&mut self, row: RunRow) -> Result<(), Error> {
         self.rows.insert(row.point.index, row);
         if self.rows.len() >= ROWS_PER_PART { self.flush() } else { Ok(()) }
     }
@@ -266,7 +266,7 @@ pub fn row_files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
 pub fn write_rows<'a>(
     path: &Path,
     table: &mut RowTable,
-    rows: impl Iterator<Item = &'a Row>,
+    rows: impl Iterator<Item = &'a RunRow>,
     fingerprint: &str,
 ) -> Result<(), Error> {
     rows.for_each(|row| table.push(row));
@@ -280,7 +280,7 @@ pub fn write_rows<'a>(
 ///
 /// # Errors
 /// [`Error`] where they cannot be encoded.
-pub fn part_bytes(experiment: &Experiment, rows: &[Row]) -> Result<Vec<u8>, Error> {
+pub fn part_bytes(experiment: &Experiment, rows: &[RunRow]) -> Result<Vec<u8>, Error> {
     let mut table = RowTable::new(experiment.study());
     for row in rows {
         table.push(row);
@@ -413,7 +413,11 @@ pub fn merge(
 ///
 /// # Errors
 /// [`Error`] where they cannot be read.
-pub fn for_every_row(folder: &Path, experiment: &Experiment, mut take: impl FnMut(Row)) -> Result<(), Error> {
+pub fn for_every_row(
+    folder: &Path,
+    experiment: &Experiment,
+    mut take: impl FnMut(RunRow),
+) -> Result<(), Error> {
     let mut seen = IndexSet::default();
     for path in row_files(folder)? {
         let mut table = RowTable::new(experiment.study());

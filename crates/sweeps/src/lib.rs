@@ -1,8 +1,8 @@
 //! Studies of many runs: one run shows that a law can work, a claim needs a thousand.
 //!
 //! A [`Study`](scene::Study) says what varies. With its scene it is an [`Experiment`]; its [`Design`] says which run has which
-//! values and which seed, and [`run_all`] makes runs on all cores. Every run is a [`Row`], which a [`StudyFolder`] puts on the
-//! disk as it ends. A [`Summary`] tells what all rows say, cell by cell.
+//! values and which seed, and [`run_all`] makes runs on all cores. Every run is a [`RunRow`], which a [`StudyFolder`] puts on the
+//! disk as it ends. A [`StudySummary`] tells what all rows say, cell by cell.
 //!
 //! Rows do not depend on cores, order or machine: a run's values and seed are functions of the study and the run's index.
 
@@ -20,9 +20,9 @@ mod runner;
 mod sampling;
 mod summary;
 
-pub use boundary::Boundary;
+pub use boundary::BoundarySearch;
 pub use chart::{StudyFigure, charts, edge_line};
-pub use design::{Axis, Design, RunPoint};
+pub use design::{Design, DesignAxis, RunPoint};
 pub use error::Error;
 pub use experiment::{CAMERAS, Experiment, GoOn};
 pub use folder::{
@@ -30,7 +30,7 @@ pub use folder::{
 };
 pub use index_set::IndexSet;
 pub use interval::wilson;
-pub use measure::{MEASURES, Measure};
-pub use row::{Row, RowStatus, RowTable};
+pub use measure::{MEASURES, RunMeasure};
+pub use row::{RowStatus, RowTable, RunRow};
 pub use runner::{Progressed, THREAD, run_all};
-pub use summary::{CellSummary, Summary, SummaryBuilder};
+pub use summary::{CellSummary, StudySummary, SummaryBuilder};

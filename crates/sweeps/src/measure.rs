@@ -4,7 +4,7 @@ use metrics::{EdgeMetrics, Metrics, RobotMetrics};
 
 /// A number of a run.
 #[derive(Debug, Clone, Copy)]
-pub struct Measure {
+pub struct RunMeasure {
     /// Its column, which ends in its unit.
     pub column: &'static str,
     /// What it is, with its unit, for axes and tables.
@@ -13,122 +13,122 @@ pub struct Measure {
 }
 
 /// All numbers of a run, in the order of their columns.
-pub const MEASURES: [Measure; 24] = [
-    Measure {
+pub const MEASURES: [RunMeasure; 24] = [
+    RunMeasure {
         column: "final_distance_error_m",
         label: "|distance error| at the end (m)",
         of: |m| worst(m, |e| e.final_error[0].abs()),
     },
-    Measure {
+    RunMeasure {
         column: "final_bearing_error_rad",
         label: "|bearing error| at the end (rad)",
         of: |m| worst(m, |e| e.final_error[1].abs()),
     },
-    Measure {
+    RunMeasure {
         column: "rms_distance_error_m",
         label: "RMS distance error (m)",
         of: |m| worst(m, |e| e.rms_error[0]),
     },
-    Measure {
+    RunMeasure {
         column: "rms_bearing_error_rad",
         label: "RMS bearing error (rad)",
         of: |m| worst(m, |e| e.rms_error[1]),
     },
-    Measure {
+    RunMeasure {
         column: "peak_distance_error_m",
         label: "largest |distance error| (m)",
         of: |m| worst(m, |e| e.peak_error[0]),
     },
-    Measure {
+    RunMeasure {
         column: "peak_bearing_error_rad",
         label: "largest |bearing error| (rad)",
         of: |m| worst(m, |e| e.peak_error[1]),
     },
-    Measure {
+    RunMeasure {
         column: "late_distance_error_m",
         label: "largest late |distance error| (m)",
         of: |m| worst(m, |e| e.late_peak_error[0]),
     },
-    Measure {
+    RunMeasure {
         column: "late_bearing_error_rad",
         label: "largest late |bearing error| (rad)",
         of: |m| worst(m, |e| e.late_peak_error[1]),
     },
-    Measure {
+    RunMeasure {
         column: "late_rms_distance_error_m",
         label: "late RMS distance error (m)",
         of: |m| worst(m, |e| e.late_rms_error[0]),
     },
-    Measure {
+    RunMeasure {
         column: "late_rms_bearing_error_rad",
         label: "late RMS bearing error (rad)",
         of: |m| worst(m, |e| e.late_rms_error[1]),
     },
-    Measure {
+    RunMeasure {
         column: "iae_distance_m_s",
         label: "∫ |distance error| dt (m s)",
         of: |m| worst(m, |e| e.iae[0]),
     },
-    Measure {
+    RunMeasure {
         column: "iae_bearing_rad_s",
         label: "∫ |bearing error| dt (rad s)",
         of: |m| worst(m, |e| e.iae[1]),
     },
-    Measure { column: "settling_time_s", label: "settling time (s)", of: settling },
-    Measure {
+    RunMeasure { column: "settling_time_s", label: "settling time (s)", of: settling },
+    RunMeasure {
         column: "effort_acceleration_m_s",
         label: "∫ |acceleration| dt (m/s)",
         of: |m| worst(m, |e| e.effort[0]),
     },
-    Measure {
+    RunMeasure {
         column: "effort_turn_rate_rad",
         label: "∫ |turn rate| dt (rad)",
         of: |m| worst(m, |e| e.effort[1]),
     },
-    Measure {
+    RunMeasure {
         column: "peak_rate_distance_m_s",
         label: "largest |estimated rate of distance| (m/s)",
         of: |m| worst(m, |e| e.peak_rates[0]),
     },
-    Measure {
+    RunMeasure {
         column: "peak_rate_bearing_rad_s",
         label: "largest |estimated rate of bearing| (rad/s)",
         of: |m| worst(m, |e| e.peak_rates[1]),
     },
-    Measure {
+    RunMeasure {
         column: "limited",
         label: "share of commands that a limit cut",
         of: |m| worst(m, |e| e.limited),
     },
-    Measure { column: "in_view", label: "share of looks that showed the leader", of: in_view },
-    Measure {
+    RunMeasure { column: "in_view", label: "share of looks that showed the leader", of: in_view },
+    RunMeasure {
         column: "filter_moved",
         label: "share of commands that a safety filter moved",
         of: |m| of_robots(m, |r| Some(r.safety.as_ref()?.moved)),
     },
-    Measure {
+    RunMeasure {
         column: "lift_max_m",
         label: "largest height over the ground (m)",
         of: |m| of_robots(m, |r| Some(r.lift_max)),
     },
-    Measure {
+    RunMeasure {
         column: "unable",
         label: "robots that can drive no more",
         of: |m| m.robots.iter().filter(|r| r.condition != "able").count() as f64,
     },
-    Measure {
+    RunMeasure {
         column: "clearance_min_m",
         label: "least clearance (m)",
         of: |m| m.clearance_min.unwrap_or(f64::NAN),
     },
-    Measure {
+    RunMeasure {
         column: "contact_impulse_max_n_s",
         label: "largest impulse of a contact (N s)",
         of: |m| m.contact_impulse_max,
     },
 ];
 
-impl Measure {
+impl RunMeasure {
     /// The number of a run; not a number where the run has none.
     pub fn of(&self, metrics: &Metrics) -> f64 {
         (self.of)(metrics)
@@ -175,9 +175,10 @@ mod tests {
         let scene = scene::Scene::parse(text, "t.toml", &[]).expect("a scene").scene;
         let run = studies::SceneRun::new(scene).expect("a run");
         let mut metrics = studies::run::run(run, None, None, |_| true).expect("judged").metrics;
-        let time = |metrics: &Metrics| Measure::called("settling_time_s").expect("a measure").of(metrics);
+        let time = |metrics: &Metrics| RunMeasure::called("settling_time_s").expect("a measure").of(metrics);
         assert!(
-            time(&metrics).is_nan() && Measure::called("limited").expect("a measure").of(&metrics).is_nan()
+            time(&metrics).is_nan()
+                && RunMeasure::called("limited").expect("a measure").of(&metrics).is_nan()
         );
         metrics.edges = vec![edge(Some(1.0)), edge(Some(3.0)), edge(Some(2.0))];
         assert_eq!(time(&metrics), 3.0);

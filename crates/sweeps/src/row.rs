@@ -27,7 +27,7 @@ words! {
 
 /// A run of a study.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct RunRow {
     /// Which run, its values and its seed.
     pub point: RunPoint,
     /// How it ended.
@@ -66,7 +66,7 @@ enum RowValue<'a> {
     Flag(bool),
 }
 
-impl Row {
+impl RunRow {
     /// The values of a row in the order of its columns, each with the name of its column; those of the study's keys have none.
     fn values(&self) -> Vec<(Option<&'static str>, RowValue<'_>)> {
         use RowValue::{Flag, Number, Text, Whole};
@@ -126,7 +126,7 @@ impl RowTable {
             };
             NamedColumn::new(name.map(Cow::Borrowed).or_else(|| names.next()).unwrap_or_default(), column)
         };
-        let empty = Row::of(point, RowStatus::Complete, String::new());
+        let empty = RunRow::of(point, RowStatus::Complete, String::new());
         Self { columns: empty.values().into_iter().map(column).collect(), keys }
     }
 
@@ -151,7 +151,7 @@ impl RowTable {
     }
 
     /// Adds a row.
-    pub fn push(&mut self, row: &Row) {
+    pub fn push(&mut self, row: &RunRow) {
         for (named, (_, value)) in self.columns.iter_mut().zip(row.values()) {
             match (&mut named.column, value) {
                 // Indices and seeds are below 2⁶³.
@@ -167,7 +167,7 @@ impl RowTable {
     }
 
     /// A row; `None` where there is none.
-    pub fn row(&self, index: usize) -> Option<Row> {
+    pub fn row(&self, index: usize) -> Option<RunRow> {
         let mut next = self.columns.iter().map(|named| &named.column);
         let [run, cell, sample, seed] = [(); 4].map(|()| whole(next.next(), index));
         let values = (0..self.keys).map(|_| text(next.next(), index)).collect::<Option<Vec<String>>>()?;
@@ -175,7 +175,7 @@ impl RowTable {
         let status =
             RowStatus::WORDS.iter().find(|(word, ..)| *word == status).map(|(_, status, _)| *status)?;
         let Some(Column::Flag(met)) = next.next() else { return None };
-        Some(Row {
+        Some(RunRow {
             point: RunPoint { index: run?, cell: cell?, sample: sample?, seed: seed?, values },
             status,
             met: *met.get(index)?,
@@ -190,7 +190,7 @@ impl RowTable {
     }
 
     /// All rows.
-    pub fn rows(&self) -> impl Iterator<Item = Row> {
+    pub fn rows(&self) -> impl Iterator<Item = RunRow> {
         (0..self.len()).filter_map(|index| self.row(index))
     }
 }
@@ -216,9 +216,10 @@ mod tests {
 
     #[test]
     fn rows_come_out_as_they_went_in() {
-        let parameter = scene::Parameter { key: "law.k".to_owned(), values: "1,2".parse().expect("values") };
+        let parameter =
+            scene::StudyParameter { key: "law.k".to_owned(), values: "1,2".parse().expect("values") };
         let study = Study { parameters: vec![parameter], ..Study::of_scene("circle-three", "t") };
-        let row = Row {
+        let row = RunRow {
             point: RunPoint { index: 1, cell: 1, sample: 0, seed: 1 << 62, values: vec!["2".to_owned()] },
             status: RowStatus::Stopped,
             met: false,

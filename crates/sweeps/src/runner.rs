@@ -1,7 +1,7 @@
 //! Many runs at once: threads make them, one of them takes the rows.
 
 use crate::experiment::Experiment;
-use crate::row::Row;
+use crate::row::RunRow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, sync_channel};
 use std::sync::{Mutex, PoisonError};
@@ -12,7 +12,7 @@ use std::time::Duration;
 #[derive(Debug)]
 pub enum Progressed {
     /// A run has ended.
-    Ended(Row),
+    Ended(RunRow),
     /// Some time has gone by.
     Waited,
 }
@@ -39,8 +39,8 @@ pub fn run_all<E>(
     let (stop, left) = (AtomicBool::new(false), Mutex::new(indices));
     let go_on = || !stop.load(Ordering::Relaxed);
     let next = || left.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let (sender, rows) = sync_channel::<Row>(4 * threads.max(1));
-    let work = |sender: &std::sync::mpsc::SyncSender<Row>| {
+    let (sender, rows) = sync_channel::<RunRow>(4 * threads.max(1));
+    let work = |sender: &std::sync::mpsc::SyncSender<RunRow>| {
         while go_on()
             && let Some(row) = next().and_then(|index| experiment.run(index, &|| clock(), &go_on))
             && sender.send(row).is_ok()

@@ -3,7 +3,7 @@
 use crate::design::Design;
 use crate::interval::wilson;
 use crate::measure::MEASURES;
-use crate::row::{Row, RowStatus};
+use crate::row::{RowStatus, RunRow};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use vocabulary::Word;
@@ -31,7 +31,7 @@ pub struct CellSummary {
 
 /// What all rows of a study say.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Summary {
+pub struct StudySummary {
     /// Cells that have runs, in their order.
     pub cells: Vec<CellSummary>,
     /// Runs.
@@ -48,7 +48,7 @@ pub struct Summary {
     pub wall_time: f64,
     /// The worst runs, first the worst.
     #[serde(skip)]
-    pub worst: Vec<Row>,
+    pub worst: Vec<RunRow>,
 }
 
 /// Gathers rows; those of a cell are in memory until its last is there.
@@ -56,7 +56,7 @@ pub struct Summary {
 pub struct SummaryBuilder<'a> {
     design: &'a Design,
     open: BTreeMap<u64, OpenCell>,
-    summary: Summary,
+    summary: StudySummary,
     keep: usize,
 }
 
@@ -73,7 +73,7 @@ struct OpenCell {
 impl<'a> SummaryBuilder<'a> {
     /// For the rows of a study; the `keep` worst runs are named.
     pub fn new(design: &'a Design, keep: usize) -> Self {
-        let summary = Summary {
+        let summary = StudySummary {
             cells: vec![],
             runs: 0,
             met: 0,
@@ -87,7 +87,7 @@ impl<'a> SummaryBuilder<'a> {
     }
 
     /// Takes in a row.
-    pub fn push(&mut self, row: Row) {
+    pub fn push(&mut self, row: RunRow) {
         let summary = &mut self.summary;
         summary.runs += 1;
         summary.met += u64::from(row.met);
@@ -112,7 +112,7 @@ impl<'a> SummaryBuilder<'a> {
     }
 
     /// What the rows say; cells that lack runs are among them.
-    pub fn finish(mut self) -> Summary {
+    pub fn finish(mut self) -> StudySummary {
         for (number, cell) in std::mem::take(&mut self.open) {
             self.summary.cells.push(cell.close(number, self.design));
         }
@@ -122,7 +122,7 @@ impl<'a> SummaryBuilder<'a> {
 }
 
 impl OpenCell {
-    fn push(&mut self, row: &Row) {
+    fn push(&mut self, row: &RunRow) {
         self.runs += 1;
         self.met += u64::from(row.met);
         self.with_contacts += u64::from(row.contacts > 0);
@@ -167,8 +167,8 @@ fn quantiles(mut values: Vec<f64>) -> [f64; 3] {
 
 /// Whether one run is worse than another: one that broke off before one that touched before one that missed an expectation, the
 /// earlier the worse; then the larger late error.
-fn worse(a: &Row, b: &Row) -> bool {
-    let rank = |row: &Row| match row.status {
+fn worse(a: &RunRow, b: &RunRow) -> bool {
+    let rank = |row: &RunRow| match row.status {
         RowStatus::Panicked => 5,
         RowStatus::Broken | RowStatus::Expired => 4,
         RowStatus::Refused => 3,
@@ -180,14 +180,14 @@ fn worse(a: &Row, b: &Row) -> bool {
             }
         }
     };
-    let late = |row: &Row| {
+    let late = |row: &RunRow| {
         let of = |column| {
             MEASURES.iter().position(|m| m.column == column).map_or(0.0, |index| row.measures[index])
         };
         let error = of("late_distance_error_m");
         if error.is_nan() { f64::INFINITY } else { error }
     };
-    let time = |row: &Row| if row.failed_time.is_nan() { f64::INFINITY } else { row.failed_time };
+    let time = |row: &RunRow| if row.failed_time.is_nan() { f64::INFINITY } else { row.failed_time };
     let order = rank(b).cmp(&rank(a)).then(time(a).total_cmp(&time(b))).then(late(b).total_cmp(&late(a)));
     order.then(a.point.index.cmp(&b.point.index)).is_lt()
 }
@@ -195,10 +195,10 @@ fn worse(a: &Row, b: &Row) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use scene::{Parameter, Study};
+    use scene::{Study, StudyParameter};
 
-    fn row(design: &Design, index: u64, met: bool) -> Row {
-        let mut row = Row::of(design.point(index), RowStatus::Complete, String::new());
+    fn row(design: &Design, index: u64, met: bool) -> RunRow {
+        let mut row = RunRow::of(design.point(index), RowStatus::Complete, String::new());
         row.met = met;
         row.measures = vec![index as f64; MEASURES.len()];
         if !met {
@@ -210,7 +210,8 @@ mod tests {
 
     #[test]
     fn cells_are_told_apart_and_the_worst_runs_come_first() {
-        let parameters = vec![Parameter { key: "law.k".to_owned(), values: "1,2".parse().expect("values") }];
+        let parameters =
+            vec![StudyParameter { key: "law.k".to_owned(), values: "1,2".parse().expect("values") }];
         let design = Design::new(Study { parameters, seeds: 10, ..Study::of_scene("circle-three", "t") });
         let mut builder = SummaryBuilder::new(&design, 2);
         // In any order.

@@ -18,6 +18,11 @@ pub trait Trajectory: std::fmt::Debug + Send + Sync {
     /// The motion at `time` in s from the start of the run; finite for every finite time.
     fn at(&self, time: f64) -> MotionInput;
 
+    /// The motion at every time, where it is always the same.
+    fn steady(&self) -> Option<MotionInput> {
+        None
+    }
+
     /// [least, largest] speed in m/s and turn rate in rad/s at any time, where they are known without a search.
     fn ranges(&self) -> Option<[[f64; 2]; 2]> {
         None

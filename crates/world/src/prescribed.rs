@@ -20,21 +20,24 @@ pub(crate) fn prescribed(lead: &dyn Trajectory, pose: Pose, time: f64, elapsed: 
     let stretches = (elapsed / GAUSS_REACH).ceil().max(1.0);
     let h = elapsed / stretches;
     let mut pose = pose;
+    // Most leads ask for the same at all times, and are asked a dozen times in every stretch.
+    let steady = lead.steady();
+    let at = |time: f64| steady.unwrap_or_else(|| lead.at(time));
     for k in 0..stretches as usize {
-        pose = stretch(lead, pose, time + k as f64 * h, h, HALVINGS);
+        pose = stretch(&at, pose, time + k as f64 * h, h, HALVINGS);
     }
-    let drive = lead.at(time + elapsed);
+    let drive = at(time + elapsed);
     Motion { pose, speed: drive.speed, acceleration: drive.acceleration, turn_rate: drive.turn_rate }
 }
 
 /// One stretch of `h` s.
-fn stretch(lead: &dyn Trajectory, pose: Pose, from: f64, h: f64, halvings: u32) -> Pose {
-    let drives = GAUSS.map(|(node, _)| lead.at(from + node * h));
+fn stretch(at: &impl Fn(f64) -> MotionInput, pose: Pose, from: f64, h: f64, halvings: u32) -> Pose {
+    let drives = GAUSS.map(|(node, _)| at(from + node * h));
     let sharp =
         |d: &MotionInput| (d.turn_rate * h).abs() > TURN || (d.turn_acceleration * h * h).abs() > TURN;
     if halvings > 0 && drives.iter().any(sharp) {
-        let middle = stretch(lead, pose, from, 0.5 * h, halvings - 1);
-        return stretch(lead, middle, from + 0.5 * h, 0.5 * h, halvings - 1);
+        let middle = stretch(at, pose, from, 0.5 * h, halvings - 1);
+        return stretch(at, middle, from + 0.5 * h, 0.5 * h, halvings - 1);
     }
     let heading = |t: f64, drives: [MotionInput; 3]| {
         let turned: f64 = GAUSS.iter().zip(drives).map(|((_, weight), drive)| weight * drive.turn_rate).sum();
@@ -43,7 +46,7 @@ fn stretch(lead: &dyn Trajectory, pose: Pose, from: f64, h: f64, halvings: u32) 
     let (mut x, mut y) = (pose.x, pose.y);
     for ((node, weight), drive) in GAUSS.into_iter().zip(drives) {
         let t = node * h;
-        let (sin, cos) = math::sin_cos(heading(t, GAUSS.map(|(node, _)| lead.at(from + node * t))));
+        let (sin, cos) = math::sin_cos(heading(t, GAUSS.map(|(node, _)| at(from + node * t))));
         let share = h * weight * drive.speed;
         x += share * cos;
         y += share * sin;

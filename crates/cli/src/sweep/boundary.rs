@@ -1,17 +1,17 @@
 //! `echelon sweep --boundary`: only the runs that it takes to find where the answer changes.
 
-use super::tell::Effort;
+use super::tell::SweepEffort;
 use super::{StudyArgs, keep};
 use crate::failure::Failure;
 use crate::print::say;
 use figures::MapLine;
 use std::collections::BTreeMap;
 use std::path::Path;
-use sweeps::{Boundary, Experiment, Row, StudyFolder, edge_line, for_every_row};
+use sweeps::{BoundarySearch, Experiment, RunRow, StudyFolder, edge_line, for_every_row};
 use vocabulary::counted;
 
 /// Where the answer changes.
-pub(super) struct Edge {
+pub(super) struct FoundEdge {
     /// Neighbouring cells, first the one whose runs meet their expectations.
     pairs: Vec<[u64; 2]>,
     /// Cells that were run.
@@ -25,9 +25,19 @@ const MOST_PAIRS: usize = 12;
 
 /// Runs of a cell, and how many of them met their expectations.
 #[derive(Default)]
-struct Tally {
+struct CellTally {
     runs: u64,
     met: u64,
+}
+
+/// The search over the keys of a study.
+pub(super) fn of(experiment: &Experiment) -> Result<BoundarySearch, Failure> {
+    let boundary = BoundarySearch::new(experiment.design()).filter(|_| experiment.study().samples == 1);
+    boundary.ok_or_else(|| {
+        let text = "--boundary needs one or two keys that vary over ranges or lists, such as --vary law.k=1..10/129, and no \
+            numbers that are drawn: seeds and --scatter are what may differ at random";
+        Failure::Usage(text.to_owned())
+    })
 }
 
 /// Makes the runs of the cells around the edge.
@@ -36,17 +46,12 @@ pub(super) fn search(
     folder: &Path,
     study: &mut StudyFolder,
     args: &StudyArgs,
-    effort: &mut Effort,
-) -> Result<Edge, Failure> {
+    effort: &mut SweepEffort,
+) -> Result<FoundEdge, Failure> {
     let design = experiment.design();
-    let usage = || {
-        let text = "--boundary needs one or two keys that vary over ranges or lists, such as --vary law.k=1..10/129, and no \
-            numbers that are drawn: seeds and --scatter are what may differ at random";
-        Failure::Usage(text.to_owned())
-    };
-    let mut boundary = Boundary::new(design).filter(|_| experiment.study().samples == 1).ok_or_else(usage)?;
-    let mut tallies: BTreeMap<u64, Tally> = BTreeMap::new();
-    let count = |tallies: &mut BTreeMap<u64, Tally>, row: &Row| {
+    let mut boundary = of(experiment)?;
+    let mut tallies: BTreeMap<u64, CellTally> = BTreeMap::new();
+    let count = |tallies: &mut BTreeMap<u64, CellTally>, row: &RunRow| {
         let tally = tallies.entry(row.point.cell).or_default();
         tally.runs += 1;
         tally.met += u64::from(row.met);
@@ -69,10 +74,10 @@ pub(super) fn search(
         }
     }
     let pairs = boundary.edge();
-    Ok(Edge { line: edge_line(design, &pairs), cells: boundary.len(), pairs })
+    Ok(FoundEdge { line: edge_line(design, &pairs), cells: boundary.len(), pairs })
 }
 
-impl Edge {
+impl FoundEdge {
     /// Prints where the edge is, and what it saved.
     pub(super) fn tell(&self, experiment: &Experiment) {
         let (design, study) = (experiment.design(), experiment.study());

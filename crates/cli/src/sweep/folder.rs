@@ -12,7 +12,7 @@ use report::{Rasterizer, Report, ReportFigure, ReportFilm};
 use std::fs;
 use std::path::Path;
 use studies::{PROGRAM, RecordSource};
-use sweeps::{Experiment, Row, Summary, SummaryBuilder, charts, for_every_row};
+use sweeps::{Experiment, RunRow, StudySummary, SummaryBuilder, charts, for_every_row};
 
 /// Runs that the report names.
 const WORST: usize = 10;
@@ -24,7 +24,7 @@ pub(super) fn complete(
     args: &ShownArgs,
     whole: bool,
     lines: &[MapLine],
-) -> Result<Summary, Failure> {
+) -> Result<StudySummary, Failure> {
     let keep = WORST.max(usize::from(args.film_worst));
     let mut builder = SummaryBuilder::new(experiment.design(), keep);
     for_every_row(folder, experiment, |row| builder.push(row))?;
@@ -67,7 +67,7 @@ pub(super) fn complete(
 fn films(
     folder: &Path,
     experiment: &Experiment,
-    worst: &[Row],
+    worst: &[RunRow],
     args: &ShownArgs,
 ) -> Result<Vec<ReportFilm>, Failure> {
     let mut films = vec![];

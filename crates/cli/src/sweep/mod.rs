@@ -12,11 +12,11 @@ use crate::print::note;
 use crate::progress::Progress;
 use crate::{Outcome, interrupt};
 use clap::{Args, Subcommand};
-use scene::{Override, Parameter, Sampling, Scatter, Study, StudyFault};
+use scene::{FollowerScatter, Override, Sampling, Study, StudyFault, StudyParameter};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use sweeps::{Experiment, Progressed, Row, RowTable, StudyFolder, THREAD, run_all};
+use sweeps::{Experiment, Progressed, RowTable, RunRow, StudyFolder, THREAD, run_all};
 use vocabulary::{Word, counted};
 
 #[derive(Debug, Args)]
@@ -45,7 +45,7 @@ struct StudyArgs {
     /// a=1,2,5 or a=zip:1,2,5; a distribution, a=uniform:0..1, a=log-uniform:0.001..0.1 or a=normal:MEAN,DEVIATION; or a==KEY
     /// for what another key is. May be repeated: there is a run for every combination
     #[arg(long, value_name = "KEY=VALUES", value_parser = varied)]
-    vary: Vec<Parameter>,
+    vary: Vec<StudyParameter>,
     /// Override a value of all runs, such as time.duration=5; may be repeated
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Override>,
@@ -64,7 +64,7 @@ struct StudyArgs {
     /// Start every follower within so many metres of where the scene puts it, with a heading that is off by so much: 0.5 or
     /// "0.5,20 deg"
     #[arg(long, value_name = "M[,ANGLE]", value_parser = scatter)]
-    scatter: Option<Scatter>,
+    scatter: Option<FollowerScatter>,
     /// Give up a run that takes longer, s; its row says so
     #[arg(long, value_name = "S", value_parser = crate::args::within(0.001..=1e9, "write seconds, such as 10"))]
     limit: Option<f64>,
@@ -121,10 +121,10 @@ pub(crate) fn sweep(args: &SweepArgs) -> Outcome {
     }
 }
 
-fn varied(text: &str) -> Result<Parameter, String> {
+fn varied(text: &str) -> Result<StudyParameter, String> {
     let (key, values) = text.split_once('=').ok_or("write KEY=VALUES, such as law.k=1..10/19")?;
     let values = values.parse().map_err(|error: scene::ValuesError| error.to_string())?;
-    Ok(Parameter { key: key.trim().to_owned(), values })
+    Ok(StudyParameter { key: key.trim().to_owned(), values })
 }
 
 fn sampling(text: &str) -> Result<Sampling, String> {
@@ -135,7 +135,7 @@ fn sampling(text: &str) -> Result<Sampling, String> {
     })
 }
 
-fn scatter(text: &str) -> Result<Scatter, String> {
+pub(crate) fn scatter(text: &str) -> Result<FollowerScatter, String> {
     let wrong = || "write metres, or metres and an angle, such as 0.5 or \"0.5,20 deg\"".to_owned();
     let (position, heading) = text.split_once(',').unwrap_or((text, "0"));
     let heading = heading.trim();
@@ -146,7 +146,7 @@ fn scatter(text: &str) -> Result<Scatter, String> {
     };
     let position = number(position).filter(|metres| *metres <= 1000.0).ok_or_else(wrong)?;
     let heading = heading.filter(|angle| *angle <= std::f64::consts::PI + 1e-9).ok_or_else(wrong)?;
-    Ok(Scatter { position, heading })
+    Ok(FollowerScatter { position, heading })
 }
 
 fn shard(text: &str) -> Result<[u64; 2], String> {
@@ -234,6 +234,9 @@ fn run(args: &StudyArgs) -> Outcome {
             counted(runs, "run")
         )));
     }
+    if args.boundary.is_some() {
+        boundary::of(&experiment)?;
+    }
     if args.dry_run {
         tell::dry(&experiment, &range, &args.shown);
         return Ok(());
@@ -259,7 +262,7 @@ fn run(args: &StudyArgs) -> Outcome {
             counted(range.end - range.start, "run")
         ));
     }
-    let (mut effort, mut edge) = (tell::Effort::default(), None);
+    let (mut effort, mut edge) = (tell::SweepEffort::default(), None);
     let outcome = if args.boundary.is_some() {
         boundary::search(&experiment, &folder, &mut study, args, &mut effort).map(|found| edge = Some(found))
     } else {
@@ -295,7 +298,7 @@ fn share(runs: u64, i: u64, n: u64) -> u64 {
     u64::try_from(u128::from(runs) * u128::from(i) / u128::from(n)).unwrap_or(runs)
 }
 
-fn judge(summary: &sweeps::Summary, least: Option<f64>) -> Outcome {
+fn judge(summary: &sweeps::StudySummary, least: Option<f64>) -> Outcome {
     let share = summary.met as f64 / summary.runs.max(1) as f64;
     match least.filter(|least| share < *least) {
         None => Ok(()),
@@ -313,7 +316,7 @@ fn judge(summary: &sweeps::Summary, least: Option<f64>) -> Outcome {
 /// One file of rows.
 fn part(experiment: &Experiment, range: Range<u64>, file: &Path, args: &StudyArgs) -> Outcome {
     let place = output::Place::file(file)?;
-    let (mut rows, mut effort): (Vec<Row>, _) = (vec![], tell::Effort::default());
+    let (mut rows, mut effort): (Vec<RunRow>, _) = (vec![], tell::SweepEffort::default());
     let count = range.end - range.start;
     let made = make(experiment, range, count, args, &mut effort, |row, _| {
         rows.extend(row);
@@ -342,8 +345,8 @@ fn keep(
     count: u64,
     study: &mut StudyFolder,
     args: &StudyArgs,
-    effort: &mut tell::Effort,
-    mut look: impl FnMut(&Row),
+    effort: &mut tell::SweepEffort,
+    mut look: impl FnMut(&RunRow),
 ) -> Outcome {
     let mut written = 0.0;
     make(experiment, indices, count, args, effort, |row, time| {
@@ -365,8 +368,8 @@ fn make(
     indices: impl Iterator<Item = u64> + Send,
     count: u64,
     args: &StudyArgs,
-    effort: &mut tell::Effort,
-    mut take: impl FnMut(Option<Row>, f64) -> Outcome,
+    effort: &mut tell::SweepEffort,
+    mut take: impl FnMut(Option<RunRow>, f64) -> Outcome,
 ) -> Outcome {
     if count == 0 {
         return Ok(());

@@ -8,7 +8,7 @@ use serde_json::json;
 use std::fmt::Write;
 use std::ops::Range;
 use std::path::Path;
-use sweeps::{CellSummary, Experiment, MEASURES, Row, Summary, wilson};
+use sweeps::{CellSummary, Experiment, MEASURES, RunRow, StudySummary, wilson};
 use vocabulary::{Word, counted};
 
 /// Runs that a trial without runs shows.
@@ -72,7 +72,7 @@ fn share(met: u64, runs: u64) -> String {
 }
 
 /// What all runs show, in a sentence or two.
-pub(super) fn lead(experiment: &Experiment, summary: &Summary) -> String {
+pub(super) fn lead(experiment: &Experiment, summary: &StudySummary) -> String {
     let study = experiment.study();
     let mut text = format!(
         "{} of {} meet what their scene expects: {}; {} without contact.",
@@ -136,7 +136,7 @@ fn cells(experiment: &Experiment, cells: &[CellSummary]) -> ReportTable {
 }
 
 /// What `echelon run` needs to make a run again.
-fn again(experiment: &Experiment, row: &Row) -> String {
+fn again(experiment: &Experiment, row: &RunRow) -> String {
     let scene = quoted(&experiment.study().scene);
     let overrides = experiment.overrides(&row.point).unwrap_or_default();
     let set: Vec<String> =
@@ -151,14 +151,14 @@ fn quoted(word: &str) -> String {
 }
 
 /// What became of a run.
-pub(super) fn worst_line(row: &Row) -> String {
+pub(super) fn worst_line(row: &RunRow) -> String {
     let when = if row.failed_time.is_nan() { String::new() } else { format!(" at {:.2} s", row.failed_time) };
     let what = if row.failed.is_empty() { row.status.word() } else { &row.failed };
     format!("Run {}: {what}{when}; {}", row.point.index, row.reason)
 }
 
 /// The tables of a report.
-pub(super) fn tables(experiment: &Experiment, summary: &Summary) -> Vec<ReportTable> {
+pub(super) fn tables(experiment: &Experiment, summary: &StudySummary) -> Vec<ReportTable> {
     let mut tables = vec![];
     let first = &summary.cells[..summary.cells.len().min(MOST_REPORTED)];
     let mut table = cells(experiment, first);
@@ -177,7 +177,7 @@ pub(super) fn tables(experiment: &Experiment, summary: &Summary) -> Vec<ReportTa
         let caption = "What was not met first".to_owned();
         tables.push(ReportTable { caption, head: vec!["expectation".to_owned(), "runs".to_owned()], rows });
     }
-    let unmet: Vec<&Row> = summary.worst.iter().filter(|row| !row.met).collect();
+    let unmet: Vec<&RunRow> = summary.worst.iter().filter(|row| !row.met).collect();
     if !unmet.is_empty() {
         let rows = unmet.iter().map(|row| vec![worst_line(row), again(experiment, row)]).collect();
         let caption = "The worst runs, and how each is made again".to_owned();
@@ -187,7 +187,7 @@ pub(super) fn tables(experiment: &Experiment, summary: &Summary) -> Vec<ReportTa
 }
 
 /// `summary.csv`.
-pub(super) fn csv(experiment: &Experiment, summary: &Summary) -> String {
+pub(super) fn csv(experiment: &Experiment, summary: &StudySummary) -> String {
     let parameters = &experiment.study().parameters;
     let field = |text: &str| {
         if text.contains([',', '"', '\n']) {
@@ -225,7 +225,7 @@ pub(super) fn csv(experiment: &Experiment, summary: &Summary) -> String {
 
 /// What was made just now.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Effort {
+pub(super) struct SweepEffort {
     /// Runs.
     pub(super) runs: u64,
     /// How long they took together, s of wall time.
@@ -235,9 +235,9 @@ pub(super) struct Effort {
 /// The result.
 pub(super) fn study(
     experiment: &Experiment,
-    summary: &Summary,
+    summary: &StudySummary,
     folder: &Path,
-    effort: &Effort,
+    effort: &SweepEffort,
     args: &ShownArgs,
 ) {
     if args.json {
@@ -286,7 +286,7 @@ pub(super) fn study(
     for row in summary.worst.iter().filter(|row| !row.met).take(MOST_WORST) {
         say(&format!("\n{}\n    {}", worst_line(row), again(experiment, row)));
     }
-    let Effort { runs, wall } = *effort;
+    let SweepEffort { runs, wall } = *effort;
     let speed = if runs == 0 {
         String::new()
     } else {

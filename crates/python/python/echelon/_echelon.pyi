@@ -269,25 +269,70 @@ class Study:
         samples: int = 1,
         sampling: str = "independent",
         seed: int = 1,
-        scatter: tuple[float, float] = (0.0, 0.0),
+        scatter: Sequence[float] = ...,
         title: str | None = None,
     ) -> Study:
-        """-"""
+        """Makes a study of a scene.
+
+        Parameters
+        ----------
+        scene : Scene
+            What runs.
+        vary : dict, optional
+            Keys and their values: a list, or a text such as ``"1..10/19"``, ``"log:0.001..0.1/13"``, ``"zip:1,2,5"``,
+            ``"uniform:0..1"``, ``"log-uniform:0.001..0.1"``, ``"normal:5,0.5"`` or ``"=law.k"``.
+        seeds : int
+            Runs of every combination, each with a seed of its own.
+        samples : int
+            How often numbers with a distribution are drawn for every combination of the others.
+        sampling : {"independent", "latin-hypercube", "sobol"}
+            How they are drawn.
+        seed : int
+            Seed of everything that differs from run to run.
+        scatter : (float, float)
+            How far followers start from where the scene puts them, m, and how far they are turned, rad.
+        title : str, optional
+            Title of figures.
+
+        Raises
+        ------
+        ValueError
+            Where keys or values are none, or contradict each other.
+        """
     @classmethod
     def load(cls, path: str | PathLike[str]) -> Study:
-        """-"""
+        """Reads a study file.
+
+        Parameters
+        ----------
+        path : path
+            The file.
+        """
     def __reduce__(self) -> tuple[Callable[..., Study], tuple[str, str, Path]]: ...
     @property
     def runs(self) -> int:
-        """-"""
-    def __len__(self) -> int: ...
+        """Runs of the study."""
+    def __len__(self) -> int:
+        """Runs of the study."""
     @property
     def fingerprint(self) -> str:
-        """-"""
+        """32 hexadecimal digits that are others where the study, its scene or the program is another."""
     def to_toml(self) -> str:
-        """-"""
+        """The study as a file has it."""
     def point(self, index: int) -> dict[str, Any]:
-        """-"""
+        """What one run has that others have not.
+
+        Parameters
+        ----------
+        index : int
+            The run, from 0.
+
+        Returns
+        -------
+        dict
+            ``index``, ``cell``, ``sample``, ``seed``, and ``set``: the overrides that make the run again, as lines of
+            ``echelon run --set``.
+        """
     def run(
         self,
         start: int = 0,
@@ -296,11 +341,50 @@ class Study:
         threads: int | None = None,
         progress: Callable[[int, int], Any] | bool | None = None,
     ) -> Table:
-        """-"""
+        """Makes runs and returns their rows: see `echelon.sweep`, which makes those of a cluster, too.
+
+        Parameters
+        ----------
+        start, stop : int, optional
+            The first run, and the one before which to end; by default all.
+        threads : int, optional
+            By default one for each core.
+        progress : callable or bool, optional
+            Called with runs that have been made and in all; True is a bar.
+
+        Returns
+        -------
+        Table
+            A row for every run, by index.
+        """
     def part(self, start: int, stop: int, *, threads: int | None = None) -> bytes:
-        """-"""
+        """Makes runs and returns their rows as the bytes of a Parquet file.
+
+        Parameters
+        ----------
+        start, stop : int
+            The first run, and the one before which to end.
+        threads : int, optional
+            By default one for each core.
+        """
     def joined(self, parts: list[bytes]) -> Table:
-        """-"""
+        """Joins the bytes of Parquet files of rows.
+
+        Parameters
+        ----------
+        parts : list of bytes
+            As `part` returns them, in any order.
+
+        Returns
+        -------
+        Table
+            A row for every run in them, by index.
+
+        Raises
+        ------
+        EchelonError
+            Where one is of another study, or a run is there twice.
+        """
 
 @final
 class Run:

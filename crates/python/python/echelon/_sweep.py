@@ -24,7 +24,7 @@ def _part(study: Study, start: int, stop: int, place: str | None, threads: int) 
 
 
 def _write(place: str, part: bytes) -> None:
-    import fsspec
+    import fsspec  # type: ignore[import-untyped]
 
     # Whoever reads sees all of a file or none: a file system writes its name last, or an object as a whole.
     files, path = fsspec.core.url_to_fs(place)
@@ -36,7 +36,7 @@ def _write(place: str, part: bytes) -> None:
 
 
 def _read(place: str) -> bytes | None:
-    import fsspec
+    import fsspec  # type: ignore[import-untyped]
 
     files, path = fsspec.core.url_to_fs(place)
     if not files.exists(path):

@@ -129,10 +129,10 @@ fn contradicts(a: &str, b: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Parameter;
+    use crate::StudyParameter;
 
     fn study(parameters: &[(&str, &str)]) -> Study {
-        let parameter = |(key, values): &(&str, &str)| Parameter {
+        let parameter = |(key, values): &(&str, &str)| StudyParameter {
             key: (*key).to_owned(),
             values: values.parse().expect("values"),
         };

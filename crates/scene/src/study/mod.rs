@@ -29,7 +29,7 @@ words! {
 
 /// A key of a scene that a study varies.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Parameter {
+pub struct StudyParameter {
     /// Path of the key, as in an override: `law.k`.
     pub key: String,
     /// What it becomes.
@@ -38,7 +38,7 @@ pub struct Parameter {
 
 /// How far followers start from where their scene puts them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Scatter {
+pub struct FollowerScatter {
     /// Radius of the disc in which a follower starts, uniformly distributed, m.
     pub position: f64,
     /// Largest turn of its heading to either side, uniformly distributed, rad.
@@ -63,9 +63,9 @@ pub struct Study {
     /// Overrides of all runs.
     pub set: Vec<Override>,
     /// What differs between runs, in the order of the file.
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<StudyParameter>,
     /// Where followers start.
-    pub scatter: Scatter,
+    pub scatter: FollowerScatter,
     /// How long a run may take, s of wall time.
     pub limit: Option<f64>,
 }
@@ -85,7 +85,7 @@ impl Study {
             sampling: Sampling::default(),
             set: vec![],
             parameters: vec![],
-            scatter: Scatter::default(),
+            scatter: FollowerScatter::default(),
             limit: None,
         }
     }

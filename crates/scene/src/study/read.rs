@@ -1,7 +1,7 @@
 //! From the text of a study file to a study, and back.
 
 use super::values::parts_of_list;
-use super::{MOST_RUNS, Parameter, Sampling, Scatter, Study, StudyFault, Values};
+use super::{FollowerScatter, MOST_RUNS, Sampling, Study, StudyFault, StudyParameter, Values};
 use crate::document::SCHEMA_VERSION;
 use crate::files::FileForm;
 use crate::text::words::word;
@@ -39,7 +39,7 @@ keys! {
         /// "normal:MEAN,DEVIATION"; or "=KEY" for what another key is.
         vary: Vec<VariedKey> = VaryForm, part;
         /// A CSV file with a column for each of several keys: a row is a combination.
-        table: Vec<Parameter> = FileForm(read_table), part;
+        table: Vec<StudyParameter> = FileForm(read_table), part;
         /// How far followers start from where their scene puts them.
         scatter: ScatterKeys = table::<ScatterKeys>(), part;
         /// How long a run may take, s of wall time.
@@ -60,7 +60,7 @@ keys! {
 /// A varied key and where it stands.
 #[derive(Debug, Clone)]
 pub(crate) struct VariedKey {
-    parameter: Parameter,
+    parameter: StudyParameter,
     span: Span,
 }
 
@@ -90,6 +90,8 @@ impl Form for VaryForm {
         reporter.expect(node.as_table(), node, || "a table of keys and their values".to_owned())?;
         let mut found = vec![];
         collect(node, "", &mut found, reporter);
+        // In the order of the file: the first is the slowest.
+        found.sort_by_key(|varied| varied.span.start);
         Some(found)
     }
 
@@ -114,14 +116,16 @@ fn collect(node: &Node, path: &str, found: &mut Vec<VariedKey>, reporter: &mut R
             (None, None) => reporter.shown(entry.node.span).to_owned(),
         };
         match text.parse::<Values>() {
-            Ok(values) => found.push(VariedKey { parameter: Parameter { key, values }, span: entry.span }),
+            Ok(values) => {
+                found.push(VariedKey { parameter: StudyParameter { key, values }, span: entry.span });
+            }
             Err(fault) => reporter.report(entry.node.span, format!("`{key}`: {fault}")),
         }
     }
 }
 
 /// The columns of a table as values that go together.
-fn read_table(text: &str, source: usize, reporter: &mut Reporter) -> Option<Vec<Parameter>> {
+fn read_table(text: &str, source: usize, reporter: &mut Reporter) -> Option<Vec<StudyParameter>> {
     let whole = Span { source, start: 0, end: 0 };
     let mut table =
         csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(text.as_bytes());
@@ -150,7 +154,7 @@ fn read_table(text: &str, source: usize, reporter: &mut Reporter) -> Option<Vec<
         reporter.report(whole, "a table needs a header with keys, and a row under it");
         return None;
     }
-    let parameter = |(key, values)| Parameter { key, values: Values::Zipped(values) };
+    let parameter = |(key, values)| StudyParameter { key, values: Values::Zipped(values) };
     Some(keys.into_iter().zip(columns).map(parameter).collect())
 }
 
@@ -180,7 +184,7 @@ fn study(text: &str, path: &Path, reporter: &mut Reporter) -> Option<Study> {
         set: value(keys.set)?,
         parameters: vary.iter().map(|varied| varied.parameter.clone()).chain(value(keys.table)?).collect(),
         // Both are left out with their table.
-        scatter: Scatter {
+        scatter: FollowerScatter {
             position: value(scatter.position).unwrap_or_default(),
             heading: value(scatter.heading).unwrap_or_default(),
         },
@@ -242,10 +246,10 @@ pub(super) fn written(study: &Study) -> String {
     }
     let set: Vec<String> = study.set.iter().map(|change| toml_text(&change.to_string())).collect();
     line("set", format!("[{}]", set.join(", ")));
-    let Scatter { position, heading } = study.scatter;
+    let FollowerScatter { position, heading } = study.scatter;
     line("scatter", format!("{{ position = {position:?}, heading = {heading:?} }}"));
     let _ = writeln!(text, "\n[vary]");
-    for Parameter { key, values } in &study.parameters {
+    for StudyParameter { key, values } in &study.parameters {
         let _ = writeln!(text, "{} = {}", toml_text(key), toml_text(&values.to_string()));
     }
     text
@@ -286,7 +290,7 @@ mod tests {
             ("seeds = 20", "seeds = 0", 4, "from 1 to"),
             ("1..10/19", "10..1/19", 9, "does not rise"),
             ("[1, 2, 5]", "[1, 1]", 10, "twice"),
-            ("time.duration=5", "time.duration", 5, "no override"),
+            ("time.duration=5", "time.duration", 5, "not an override"),
             ("time.duration=5", "law.k=5", 9, "given twice"),
         ] {
             let errors = read(&FILE.replace(from, to)).expect_err(to);

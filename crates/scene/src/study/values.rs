@@ -116,15 +116,15 @@ impl fmt::Display for Values {
 }
 
 /// A number, and whether it is an angle in degrees.
-fn measured(text: &str) -> Option<Measured> {
+fn measured(text: &str) -> Option<WrittenNumber> {
     let text = text.trim();
     let bare = text.strip_suffix("deg").or_else(|| text.strip_suffix('°'));
     let number: f64 = bare.unwrap_or(text).trim_end().parse().ok()?;
-    number.is_finite().then_some(Measured { number, degrees: bare.is_some() })
+    number.is_finite().then_some(WrittenNumber { number, degrees: bare.is_some() })
 }
 
 /// A number as it is written.
-struct Measured {
+struct WrittenNumber {
     number: f64,
     degrees: bool,
 }
