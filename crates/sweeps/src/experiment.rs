@@ -2,7 +2,6 @@
 
 use crate::design::{Design, RunPoint};
 use crate::error::Error;
-use crate::measure::MEASURES;
 use crate::row::{RowStatus, RunRow};
 use recording::Status;
 use scene::{Diagnostics, Loaded, Override, Role, Scene, Study, StudyFault, Values, value_text};
@@ -184,7 +183,8 @@ impl Experiment {
                     judged.metrics.duration
                 );
                 let time = judged.metrics.duration;
-                RunRow { failed_time: time, ..RunRow::of(point, RowStatus::Expired, reason) }.with(&judged)
+                RunRow { failed_time: time, ..RunRow::of(point, RowStatus::Expired, reason) }
+                    .measured(&judged)
             }
             Ok(Made::Judged(_)) => return None,
             Ok(Made::Not(status, reason)) => RunRow::of(point, status, reason),
@@ -228,7 +228,7 @@ enum Made {
 /// What a row of a run that ended says, but for which run it is.
 fn row(judged: &JudgedRun) -> RunRow {
     let status = if judged.status == Status::Complete { RowStatus::Complete } else { RowStatus::Stopped };
-    let mut row = RunRow::of(RunPoint::default(), status, String::new()).with(judged);
+    let mut row = RunRow::of(RunPoint::default(), status, String::new()).measured(judged);
     row.digest.clone_from(&judged.digest);
     let unmet = judged.findings.iter().filter(|finding| finding.failed());
     let timed = unmet.map(|finding| (failed_at(finding.key, judged), finding));
@@ -254,14 +254,6 @@ fn failed_at(key: &str, judged: &JudgedRun) -> f64 {
         _ => None,
     };
     found.unwrap_or(metrics.duration)
-}
-
-impl RunRow {
-    /// With the numbers of a run.
-    fn with(self, judged: &JudgedRun) -> Self {
-        let measures = MEASURES.iter().map(|measure| measure.of(&judged.metrics)).collect();
-        Self { contacts: judged.metrics.contacts as u64, measures, ..self }
-    }
 }
 
 /// What a panic says.

@@ -5,6 +5,7 @@ use crate::measure::MEASURES;
 use recording::{Column, NamedColumn};
 use scene::Study;
 use std::borrow::Cow;
+use studies::run::JudgedRun;
 use vocabulary::{Word, words};
 
 words! {
@@ -108,6 +109,12 @@ impl RunRow {
             digest: String::new(),
             wall_time: 0.0,
         }
+    }
+
+    /// With the numbers of a run.
+    pub(crate) fn measured(self, judged: &JudgedRun) -> Self {
+        let measures = MEASURES.iter().map(|measure| measure.of(&judged.metrics)).collect();
+        Self { contacts: judged.metrics.contacts as u64, measures, ..self }
     }
 }
 
