@@ -269,3 +269,47 @@ fn first(errors: &Diagnostics) -> String {
     let first = errors.all().first().map_or_else(String::new, |first| first.message.clone());
     if more == 0 { first } else { format!("{first} (and {more} more)") }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    fn experiment(limit: Option<f64>) -> Experiment {
+        let set = vec!["time.duration=1".parse().expect("an override")];
+        Experiment::new(Study { set, limit, ..Study::of_scene("line-three", "t") }).expect("an experiment")
+    }
+
+    #[test]
+    fn a_fault_of_the_program_is_a_row() {
+        let asked = Cell::new(0);
+        let clock = || {
+            asked.set(asked.get() + 1);
+            assert!(asked.get() != 2, "broken on purpose");
+            0.0
+        };
+        let row = experiment(None).run(0, &clock, &|| true).expect("a row");
+        assert_eq!((row.status, row.met), (RowStatus::Panicked, false));
+        assert!(row.reason.contains("broken on purpose") && row.digest.is_empty(), "{}", row.reason);
+    }
+
+    #[test]
+    fn a_run_that_takes_too_long_is_a_row_and_one_that_is_given_up_is_none() {
+        let asked = Cell::new(0.0);
+        let clock = || asked.replace(asked.get() + 1.0);
+        let row = experiment(Some(2.5)).run(0, &clock, &|| true).expect("a row");
+        assert_eq!(row.status, RowStatus::Expired);
+        assert!(row.failed_time > 0.0 && row.failed_time < 1.0 && row.wall_time > 2.5, "{row:?}");
+        assert_eq!(experiment(None).run(0, &|| 0.0, &|| false), None);
+        assert_eq!(experiment(None).run(0, &|| 0.0, &|| true).expect("a row").status, RowStatus::Complete);
+    }
+
+    #[test]
+    fn another_scene_study_or_override_is_another_experiment() {
+        let one = experiment(None);
+        let of = |study: Study| Experiment::new(study).expect("an experiment").fingerprint().to_owned();
+        assert_eq!(of(Study { title: "other".to_owned(), ..one.study().clone() }), one.fingerprint());
+        assert_ne!(of(Study { seed: 2, ..one.study().clone() }), one.fingerprint());
+        assert_ne!(of(Study { scene: "circle-three".to_owned(), ..one.study().clone() }), one.fingerprint());
+    }
+}
