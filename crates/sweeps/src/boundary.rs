@@ -18,7 +18,7 @@ pub struct BoundarySearch {
     answers: BTreeMap<[u64; 2], bool>,
 }
 
-/// Squares along the longer side, at first.
+/// Squares along the longer side at first, at most; at least half as many.
 const FIRST: u64 = 8;
 
 impl BoundarySearch {

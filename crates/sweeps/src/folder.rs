@@ -47,6 +47,7 @@ pub struct StudyFolder {
     done: IndexSet,
     /// Rows that are not on the disk yet.
     rows: BTreeMap<u64, RunRow>,
+    /// Without rows.
     table: RowTable,
     next_part: u64,
     _claim: Claim,
@@ -98,7 +99,11 @@ impl StudyFolder {
         if let (true, Ok(earlier)) = (goes_on, earlier) {
             study.fits(&earlier)?;
             study.recall()?;
-        } else {
+        }
+        fs::create_dir_all(study.folder.join(PARTS)).map_err(output::Error::io("create", &study.folder))?;
+        // Before all else: without it nobody knows whose the folder is.
+        study.write_manifest()?;
+        if !folder.join(STUDY).exists() || !folder.join(SCENE).exists() {
             // Whoever reads it later may stand in another folder.
             let scene = std::path::absolute(&experiment.study().scene).ok().filter(|path| path.is_file());
             let scene =
@@ -106,8 +111,6 @@ impl StudyFolder {
             study.write(STUDY, &Study { scene, ..experiment.study().clone() }.to_toml())?;
             study.write(SCENE, experiment.scene_text())?;
         }
-        fs::create_dir_all(study.folder.join(PARTS)).map_err(output::Error::io("create", &study.folder))?;
-        study.write_manifest()?;
         Ok(study)
     }
 
@@ -126,11 +129,6 @@ impl StudyFolder {
     /// The study that is in `folder`, with its scene as it was.
     pub fn study_file(folder: &Path) -> PathBuf {
         folder.join(STUDY)
-    }
-
-    /// The scene that is in `folder`.
-    pub fn scene_file(folder: &Path) -> PathBuf {
-        folder.join(SCENE)
     }
 
     /// Runs that have been made.
@@ -173,6 +171,7 @@ impl StudyFolder {
 
     /// Learns which runs have been made.
     fn recall(&mut self) -> Result<(), Error> {
+        self.done = IndexSet::default();
         let whole = self.folder.join(RUNS);
         for path in row_files(&self.folder)? {
             let indices = indices(&path)?;
@@ -211,7 +210,7 @@ impl StudyFolder {
             return Ok(());
         }
         let path = self.folder.join(PARTS).join(format!("{:06}.parquet", self.next_part));
-        write_rows(&path, &mut self.table, self.rows.values(), &self.manifest.fingerprint)?;
+        write_rows(&path, &self.table, self.rows.values(), &self.manifest.fingerprint)?;
         self.next_part += 1;
         for index in std::mem::take(&mut self.rows).into_keys() {
             self.done.insert(index);
@@ -227,7 +226,7 @@ impl StudyFolder {
         self.flush()?;
         let (whole, files) = (self.folder.join(RUNS), row_files(&self.folder)?);
         if files != [whole.clone()] {
-            join(&files, &whole, &mut self.table, &self.manifest.fingerprint)?;
+            join(&files, &whole, &self.table, &self.manifest.fingerprint)?;
         }
         let parts = self.folder.join(PARTS);
         fs::remove_dir_all(&parts).map_err(output::Error::io("remove", &parts))?;
@@ -259,16 +258,17 @@ pub fn row_files(folder: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(whole.into_iter().chain(files).collect())
 }
 
-/// Writes rows as a file of their own, which carries the fingerprint of their study.
+/// Writes rows as a file of their own, which carries the fingerprint of their study; `empty` is a table of it without rows.
 ///
 /// # Errors
 /// [`Error`] where the disk does not take them.
 pub fn write_rows<'a>(
     path: &Path,
-    table: &mut RowTable,
+    empty: &RowTable,
     rows: impl Iterator<Item = &'a RunRow>,
     fingerprint: &str,
 ) -> Result<(), Error> {
+    let mut table = empty.clone();
     rows.for_each(|row| table.push(row));
     let mut file = ParquetWriter::marked(path, table.columns(), fingerprint)?;
     file.write(table.columns_mut())?;
@@ -327,8 +327,9 @@ fn twice(index: u64, path: &Path) -> Error {
     Error::Usage(format!("run {index} is there twice; the second is in {}", path.display()))
 }
 
-/// Joins files of rows into one, by index; those that are in memory at once are of files that overlap. Returns how many.
-fn join(files: &[PathBuf], whole: &Path, table: &mut RowTable, fingerprint: &str) -> Result<u64, Error> {
+/// Joins files of rows into one, by index; those that are in memory at once are of files that overlap. `empty` is a
+/// table without rows.
+fn join(files: &[PathBuf], whole: &Path, empty: &RowTable, fingerprint: &str) -> Result<(), Error> {
     let mut ordered = vec![];
     for path in files {
         if let Some(first) = indices(path)?.first().copied() {
@@ -336,10 +337,10 @@ fn join(files: &[PathBuf], whole: &Path, table: &mut RowTable, fingerprint: &str
         }
     }
     ordered.sort_by_key(|file| file.first);
-    let mut out = ParquetWriter::marked(whole, table.columns(), fingerprint)?;
-    let (mut waiting, mut count) = (BTreeMap::new(), 0);
+    let mut out = ParquetWriter::marked(whole, empty.columns(), fingerprint)?;
+    let mut waiting = BTreeMap::new();
     for (number, file) in ordered.iter().enumerate() {
-        let mut read = table.clone();
+        let mut read = empty.clone();
         append_columns(file.path, read.columns_mut())?;
         for row in read.rows() {
             let index = row.point.index;
@@ -350,7 +351,7 @@ fn join(files: &[PathBuf], whole: &Path, table: &mut RowTable, fingerprint: &str
         // What is to come begins there.
         let sure = ordered.get(number + 1).map_or(u64::MAX, |next| next.first);
         let later = waiting.split_off(&sure);
-        count += waiting.len() as u64;
+        let mut table = empty.clone();
         for row in waiting.values() {
             table.push(row);
         }
@@ -360,7 +361,7 @@ fn join(files: &[PathBuf], whole: &Path, table: &mut RowTable, fingerprint: &str
         waiting = later;
     }
     out.close()?;
-    Ok(count)
+    Ok(())
 }
 
 /// A file of rows with the first index in it.
@@ -381,7 +382,19 @@ pub fn merge(
     force: bool,
 ) -> Result<IndexSet, Error> {
     let mut files = vec![];
+    let whole = folder.canonicalize().ok();
     for part in parts {
+        // What is merged must not be what is replaced.
+        if whole.is_some()
+            && part
+                .canonicalize()
+                .is_ok_and(|part| Some(&*part) == whole.as_deref() || part.parent() == whole.as_deref())
+        {
+            return Err(Error::Usage(format!(
+                "{} is to be merged into itself: choose another folder",
+                part.display()
+            )));
+        }
         let found = if part.is_dir() { row_files(part)? } else { vec![part.clone()] };
         if found.is_empty() {
             return Err(Error::Usage(format!("{} has no rows of a study", part.display())));
@@ -402,7 +415,7 @@ pub fn merge(
     let missing = found.missing(0..experiment.study().runs());
     if missing.is_empty() {
         let mut study = StudyFolder::open(folder, experiment, 0..experiment.study().runs(), force)?;
-        join(&files, &folder.join(RUNS), &mut study.table, experiment.fingerprint())?;
+        join(&files, &folder.join(RUNS), &study.table, experiment.fingerprint())?;
         study.recall()?;
         study.finish()?;
     }
@@ -425,4 +438,32 @@ pub fn for_every_row(
         table.rows().filter(|row| seen.insert(row.point.index)).for_each(&mut take);
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row::RowStatus;
+
+    /// What the disk refused is written once when it takes it again.
+    #[test]
+    fn rows_that_the_disk_refused_are_not_lost_and_not_doubled() {
+        let root = tempfile::tempdir().expect("a folder");
+        let folder = root.path().join("study");
+        let study = Study { seeds: 3, ..Study::of_scene("line-three", "t") };
+        let experiment = Experiment::new(study).expect("an experiment");
+        let row = |index| RunRow::of(experiment.design().point(index), RowStatus::Complete, String::new());
+        let mut study = StudyFolder::open(&folder, &experiment, 0..3, false).expect("a folder");
+        study.push(row(0)).expect("taken");
+        fs::remove_dir(folder.join(PARTS)).expect("removed");
+        study.flush().expect_err("no folder");
+        fs::create_dir(folder.join(PARTS)).expect("made");
+        study.push(row(2)).expect("taken");
+        study.flush().expect("written");
+        study.push(row(1)).expect("taken");
+        study.finish().expect("joined");
+        let mut found = vec![];
+        for_every_row(&folder, &experiment, |row| found.push(row.point.index)).expect("rows");
+        assert_eq!((found, indices(&folder.join(RUNS)).expect("indices")), (vec![0, 1, 2], vec![0, 1, 2]));
+    }
 }

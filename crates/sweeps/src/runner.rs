@@ -28,7 +28,7 @@ pub const THREAD: &str = "run";
 /// Rows do not depend on the number of threads; their order does.
 ///
 /// # Errors
-/// What `take` returned, or that the system gives no threads.
+/// What `take` returned. Where the system gives no threads, there are no rows.
 pub fn run_all<E>(
     experiment: &Experiment,
     indices: impl Iterator<Item = u64> + Send,

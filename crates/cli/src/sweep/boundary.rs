@@ -91,7 +91,7 @@ impl FoundEdge {
         ));
         if self.pairs.is_empty() {
             say(
-                "all cells that were run answer alike: there is no edge, or one that is thinner than an eighth of the range",
+                "all cells that were run answer alike: there is no edge, or one that is thinner than a quarter of the range",
             );
         }
         for [met, unmet] in self.pairs.iter().take(MOST_PAIRS) {

@@ -330,7 +330,7 @@ fn part(experiment: &Experiment, range: Range<u64>, file: &Path, args: &StudyArg
     }
     made?;
     rows.sort_by_key(|row| row.point.index);
-    sweeps::write_rows(file, &mut RowTable::new(experiment.study()), rows.iter(), experiment.fingerprint())?;
+    sweeps::write_rows(file, &RowTable::new(experiment.study()), rows.iter(), experiment.fingerprint())?;
     drop(place);
     Ok(())
 }

@@ -64,6 +64,13 @@ fn rows_are_the_same_on_one_thread_in_shards_and_in_files() {
     let (code, _, error) =
         told(&echelon(root.path(), &["sweep", "merge", "joined", "shard-1", "shard-2", "shard-3", "-q"]));
     assert_eq!((code, rows(&root.path().join("joined"))), (0, whole.clone()), "{error}");
+    // Once more, and into one of the parts.
+    let merge = |out: &str| {
+        told(&echelon(root.path(), &["sweep", "merge", out, "shard-1", "shard-2", "shard-3", "-q"]))
+    };
+    assert_eq!((merge("joined").0, rows(&root.path().join("joined"))), (0, whole.clone()));
+    let (code, _, error) = merge("shard-2");
+    assert!(code == 2 && error.contains("into itself"), "{error}");
     run(&["-o", "a.parquet", "--range", "0..5"]);
     run(&["-o", "b.parquet", "--range", "5..8"]);
     let study = ["--study", "whole/study.toml", "-q"];
@@ -153,10 +160,16 @@ fn the_edge_is_the_one_of_the_whole_study() {
 #[test]
 fn runs_that_cannot_be_are_rows_and_the_others_go_on() {
     let root = tempfile::tempdir().expect("a folder");
-    // With this much scatter some starts overlap; a limit that nothing keeps ends the others.
     let study = ["sweep", "line-three", "--vary", "robots.follower-1.pose=uniform:-1..1", "--samples", "2"];
     let (code, _, error) = told(&echelon(root.path(), &study));
     assert!(code == 2 && error.contains("robots.follower-1.pose"), "{error}");
+    // Gains below 0 are drawn now and then.
+    let drawn = ["sweep", "line-three", "--set", SHORT, "--vary", "law.k=normal:1,2", "--samples", "20"];
+    let found = json(&echelon(root.path(), &[&drawn[..], &["--json", "-o", "drawn"]].concat()));
+    let count = |status: &str| found["summary"]["by_status"][status].as_u64().unwrap_or(0);
+    assert!(count("refused") > 0 && count("complete") > 0, "{found}");
+    assert_eq!(count("refused") + count("complete"), 20);
+    // Nothing keeps this limit.
     let found = json(&echelon(
         root.path(),
         &["sweep", "line-three", "--set", "time.duration=2000", "--seeds", "2", "--limit", "0.001", "--json"],
