@@ -4,7 +4,7 @@ use crate::caption::caption;
 use crate::error::{BuildError, EPSILON_MIN};
 use crate::events::event_plan;
 use crate::filing::edge_laws;
-use crate::goals::{Goals, goals, wishes};
+use crate::goals::{Goals, PlanPurpose, goals, wishes};
 use crate::parameters::{ParameterSet, ScheduledChange};
 use crate::safety::SafetyConfig;
 use crate::setup::Setup;
@@ -24,6 +24,19 @@ use world::{Unicycle, WorldSetup};
 /// # Errors
 /// [`BuildError`], naming the robots.
 pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
+    build_for(scene, PlanPurpose::Driving)
+}
+
+/// Puts the run of a scene together that another run changes to as it goes on ([`apply_parameters`](crate::Simulation::apply_parameters)). That one plans from
+/// where it is, so here only the first way to every goal is looked for, to know that there is one.
+///
+/// # Errors
+/// Those of [`build`].
+pub fn build_change(scene: &Scene) -> Result<Setup, BuildError> {
+    build_for(scene, PlanPurpose::Checking)
+}
+
+fn build_for(scene: &Scene, purpose: PlanPurpose) -> Result<Setup, BuildError> {
     let graph = graph_of(scene)?;
     let joining = scene.joining();
     // One entry per edge, in the order of the graph's.
@@ -33,7 +46,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     check_continuous(scene, &followers)?;
 
     let laws = edge_laws(scene);
-    let goals = goals(scene, &graph, &laws, false)?;
+    let goals = goals(scene, &graph, &laws, purpose)?;
     let mut stage = stage(scene, &goals)?;
     let leading = stage.actors.iter().enumerate();
     let leads = leading.filter_map(|(index, actor)| Some((index, actor.robot.lead.clone()?))).collect();
@@ -106,7 +119,7 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
 /// # Errors
 /// Those of [`build`].
 pub fn recorded_plans(scene: &Scene) -> Result<Goals, BuildError> {
-    goals(scene, &graph_of(scene)?, &edge_laws(scene), true)
+    goals(scene, &graph_of(scene)?, &edge_laws(scene), PlanPurpose::Drawing)
 }
 
 /// Who follows whom, and who joins later.

@@ -28,7 +28,7 @@ mod standstill;
 mod step;
 
 pub use batch::BatchError;
-pub use build::{build, edge_law, recorded_plans};
+pub use build::{build, build_change, edge_law, recorded_plans};
 pub use caption::{caption, short};
 pub use drivable::Undrivable;
 pub use error::BuildError;

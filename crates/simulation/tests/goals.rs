@@ -3,7 +3,7 @@
 mod trial_scene;
 
 use scene::{Override, Scene};
-use simulation::{BuildError, Simulation, build};
+use simulation::{BuildError, ParameterSet, Simulation, build, build_change};
 use trial_scene::trial_scene;
 use vocabulary::{Contact, EntityId, EventKind, EventRecord, StepRecord, TourGoal, math};
 
@@ -101,6 +101,26 @@ fn what_has_no_way_is_told_by_the_names_of_the_scene() {
     assert!(told.contains("between `wall-"), "{told}");
     let told = why_not("maze-three", &["props.wall-1.from=[0.5, -2]", "props.wall-1.to=[0.5, 12]"]);
     assert!(told.contains("`robot-1` starts too near to `wall-1`"), "{told}");
+}
+
+/// The window checks every drag of a goal so: the run plans once more, from where it is.
+#[test]
+fn a_change_wants_the_same_and_looks_for_the_first_way_only() {
+    let moved = scene("maze-three", &["groups.robot.path.pose=[19, 1, 0]"]);
+    let (whole, change) = (build(&moved).expect("a run"), build_change(&moved).expect("a run"));
+    assert_eq!(ParameterSet::of(&change).wishes, ParameterSet::of(&whole).wishes);
+    let cost = |setup: &simulation::Setup| {
+        let (_, motion) = setup.goals.motions().next().expect("a lead with a goal");
+        let plan = &motion.parts()[0].plan;
+        (plan.smoothed, plan.expansions)
+    };
+    let ((smoothed, swept), (rough, first)) = (cost(&whole), cost(&change));
+    assert!(smoothed && !rough && first < swept, "{first} of {swept}");
+    for sets in [["groups.robot.path.pose=[5, 3, 0]"], ["groups.robot.path.pose=[5000, 3, 0]"]] {
+        let refused = scene("maze-three", &sets);
+        let why = build_change(&refused).map(|_| ()).expect_err("no way").to_string();
+        assert_eq!(why, build(&refused).map(|_| ()).expect_err("no way").to_string());
+    }
 }
 
 /// At a goal near a wall a formation heads for the wall, and has no room to turn: no gap is to blame.

@@ -4,7 +4,7 @@
 //! with checkpoints about every second. Going back starts from the checkpoint before and simulates up to the requested
 //! sample, which gives the same run bit for bit.
 
-use super::checked_scene::{CheckedScene, build};
+use super::checked_scene::{CheckedScene, build, build_change};
 use metrics::Digest;
 use scene::{ChangeText, Event, Scene, SceneText, Trigger};
 use simulation::{BuildError, Setup, Simulation};
@@ -200,7 +200,7 @@ impl Branch {
         while simulation.sample() < until {
             let sample = simulation.sample();
             let due = changes.iter().filter(|change| change.sample == sample && base.changes.is_empty());
-            for setup in due.filter_map(|change| build(&change.scene).ok()) {
+            for setup in due.filter_map(|change| build_change(&change.scene).ok()) {
                 simulation.apply_parameters(&setup);
                 simulation.replan(&setup);
             }

@@ -20,12 +20,12 @@ pub struct CheckedScene {
 }
 
 impl CheckedScene {
-    /// Builds the run of a scene.
+    /// Builds the run of a scene, for another to change to: see [`simulation::build_change`].
     ///
     /// # Errors
     /// [`BuildError`] for a scene that cannot run.
     pub fn new(scene: Arc<Scene>) -> Result<Self, BuildError> {
-        let setup = build(&scene)?;
+        let setup = build_change(&scene)?;
         Ok(Self { scene, setup, before: None, set: Vec::new() })
     }
 
@@ -64,6 +64,15 @@ impl CheckedScene {
 pub(crate) fn build(scene: &Scene) -> Result<Setup, BuildError> {
     BUILDS.set(BUILDS.get() + 1);
     simulation::build(scene)
+}
+
+/// Builds the run of a scene that another one changes to, and counts it.
+///
+/// # Errors
+/// [`BuildError`] for a scene that cannot run.
+pub(crate) fn build_change(scene: &Scene) -> Result<Setup, BuildError> {
+    BUILDS.set(BUILDS.get() + 1);
+    simulation::build_change(scene)
 }
 
 /// Number of runs that this thread has built.

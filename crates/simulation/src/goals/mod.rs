@@ -19,6 +19,7 @@ mod replan;
 
 pub use motion::{PlannedMotion, PlannedPart};
 pub use navigator::GoalWish;
+pub(crate) use navigator::PlanPurpose;
 pub(crate) use replan::navigate;
 
 use crate::error::BuildError;
@@ -82,7 +83,7 @@ impl Goals {
     }
 }
 
-/// Plans for all lead robots that have goals; whether it is recorded what the searches look at is for pictures.
+/// Plans for all lead robots that have goals.
 ///
 /// # Errors
 /// There is no way to a goal: with the reason, and with what there is a way for.
@@ -90,7 +91,7 @@ pub(crate) fn goals(
     scene: &Scene,
     graph: &Graph,
     laws: &[EdgeLaw],
-    records: bool,
+    purpose: PlanPurpose,
 ) -> Result<Goals, BuildError> {
     let mut asked = wishes(&scene.robots);
     if asked.is_empty() {
@@ -127,7 +128,7 @@ pub(crate) fn goals(
             standing: &standing,
             moving: &moving,
             filtered,
-            records,
+            purpose,
             explains: true,
         };
         let departure = Departure { start: PlanStart::at(scene.robots[lead].pose), held: None, time: 0.0 };

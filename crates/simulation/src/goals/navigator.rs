@@ -69,6 +69,17 @@ pub(super) enum Phase {
     Stays,
 }
 
+/// What plans are made for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum PlanPurpose {
+    /// They are driven.
+    Driving,
+    /// They are drawn, with what the searches looked at.
+    Drawing,
+    /// They show that there is a way: the first that is found will do.
+    Checking,
+}
+
 /// A formation and what is known of its surroundings: what a plan is made of.
 #[derive(Clone, Copy)]
 pub(super) struct PlanTask<'a> {
@@ -78,8 +89,8 @@ pub(super) struct PlanTask<'a> {
     pub(super) moving: &'a [(EntityId, MovingThing)],
     /// Whether safety filters keep its robots off things.
     pub(super) filtered: bool,
-    /// Whether it is recorded what searches look at.
-    pub(super) records: bool,
+    /// What the plan is for.
+    pub(super) purpose: PlanPurpose,
     /// Whether somebody wants to know why there is no way.
     pub(super) explains: bool,
 }
@@ -115,7 +126,7 @@ impl GoalWish {
         clearance: f64,
     ) -> Result<Vec<PlannedPart>, (usize, PlanError)> {
         let near = self.parts_off(task, departure, next, clearance)?;
-        if !task.filtered || self.travel.clearance.is_some() {
+        if !task.filtered || self.travel.clearance.is_some() || task.purpose == PlanPurpose::Checking {
             return Ok(near);
         }
         let lasts = |parts: &[PlannedPart]| parts.iter().map(|part| part.plan.duration()).sum::<f64>();
@@ -148,7 +159,11 @@ impl GoalWish {
                 held: held.as_deref(),
                 ..PlanRequest::new(&map, task.model, task.limits, mission)
             };
-            (request.effort.records, request.effort.explains) = (task.records, task.explains);
+            let effort = &mut request.effort;
+            (effort.records, effort.explains) = (task.purpose == PlanPurpose::Drawing, task.explains);
+            if task.purpose == PlanPurpose::Checking {
+                (effort.improvement, effort.smooths) = (0, false);
+            }
             let is_last = number + 1 == self.goals.len();
             let schedule = Schedule { begins: time, stays: if is_last { f64::INFINITY } else { self.pause } };
             let plan = in_shape(&request, &things, schedule).map_err(|error| (number, error))?;

@@ -4,7 +4,7 @@
 use super::goal_formation::{GoalFormation, shape};
 use super::known_things::above;
 use super::motion::{PlannedMotion, PlannedPart};
-use super::navigator::{Departure, Navigator, Phase, PlanTask};
+use super::navigator::{Departure, Navigator, Phase, PlanPurpose, PlanTask};
 use crate::events::let_stand;
 use crate::simulation::Simulation;
 use planning::{
@@ -316,8 +316,8 @@ fn plan_again(
     let limits = formation.limits(&vehicles, &navigator.wish.travel);
     let filtered = formation.robots.iter().any(|robot| run.goals.rooms[*robot] > 0.0);
     let (standing, moving) = (&found.standing, &found.moving);
-    let task =
-        PlanTask { model: &model, limits, standing, moving, filtered, records: false, explains: false };
+    let purpose = PlanPurpose::Driving;
+    let task = PlanTask { model: &model, limits, standing, moving, filtered, purpose, explains: false };
     let departure = departure(run, navigator, formation, &model, &limits, time);
     let wish = navigator.wish.clone();
     let clearance = wish.clearance(&run.goals.rooms, &formation.robots);
