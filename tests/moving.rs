@@ -158,6 +158,40 @@ fn they_start_without_a_jump() {
 }
 
 /// Measurements with noise: the line's direction comes from the follower's own heading and its sensor.
+/// A truck that heads away from its place cannot turn on the spot: it turns round while it drives.
+#[test]
+fn a_truck_that_heads_the_other_way_turns_round() {
+    let text = r#"
+schema = 1
+title = "The other way"
+[time]
+duration = 30.0
+[vehicle]
+kind = "car"
+[law]
+k = 2.0
+beta = 1.5
+slope = 8.0
+heading = "path"
+standing = true
+[[robots]]
+name = "lead"
+pose = [0, 0, 0]
+path = { kind = "constant", speed = 0.8 }
+[[robots]]
+name = "truck"
+leader = "lead"
+distance = 2.0
+bearing = "180 deg"
+pose = [-2, 0, "180 deg"]
+speed = 0.0
+"#;
+    let scene = Scene::parse(text, "scene.toml", &[]).unwrap_or_else(|fault| panic!("{fault}")).scene;
+    let edges = run(&scene, |_| ());
+    let [distance, bearing] = edges[0].final_error;
+    assert!(distance.abs() < 0.05 && bearing.abs() < 0.05, "{distance} m, {bearing} rad off");
+}
+
 #[test]
 fn with_noise_they_stand_near_their_places() {
     for observer in ["high-gain", "unscented"] {

@@ -149,6 +149,7 @@ impl EdgeLaw {
             place: self.seen_place(memory, seen),
             own_speed: seen.own_speed,
             leader: [memory.speed, memory.acceleration],
+            steered: false,
         })
     }
 

@@ -438,7 +438,7 @@ impl Formation {
         let memory = &mut state.memories[first];
         if let Some(input) = parameters.standing_input(memory, &views[0].place, seen) {
             let leader = [memory.speed_now(), memory.acceleration];
-            let input = StandingInput { leader, ..input };
+            let input = StandingInput { leader, steered: limits.curvature_max.is_finite(), ..input };
             (asked, phase) = memory.standing.command(asked, &input);
         }
         if let Some(hand_over) = &mut memory.hand_over {

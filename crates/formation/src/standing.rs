@@ -6,6 +6,7 @@
 
 use crate::column::cartesian;
 use crate::offset::{Offset, OffsetBounds};
+use std::f64::consts::FRAC_PI_2;
 use vocabulary::{Command, MotionPhase, SetPoint, math, wrap};
 
 /// Whether a follower stands, and how far its set point is from its place for that.
@@ -33,6 +34,8 @@ pub(crate) struct StandingInput<'a> {
     pub own_speed: f64,
     /// What the leader is believed to do, m/s and m/s².
     pub leader: [f64; 2],
+    /// Whether it turns on steered wheels.
+    pub steered: bool,
 }
 
 /// Below the first speed the tracker acts alone, above the second the law, damped and within the rule's bounds, m/s.
@@ -63,6 +66,8 @@ const ASIDE: [f64; 2] = [1.0, 0.5];
 const ACCELERATION_MAX: f64 = 4.0;
 /// Largest turn rate at rest, rad/s, and how it grows with speed, 1/m: of the tracker and of the law.
 const TURN_MOST: [[f64; 2]; 2] = [[0.2, 3.0], [0.3, 6.0]];
+/// Who turns round on steered wheels does so this fast if it can, rad/s.
+const TURNS_ROUND: f64 = 2.0;
 /// The law's turn rate is damped below about this speed, m/s.
 const DAMPING_SPEED: f64 = 0.1;
 
@@ -132,6 +137,17 @@ impl Standing {
         let speed = math::hypot(forward, left);
         let direction = if speed > STANDS { math::atan2(left, forward) } else { 0.0 };
         let off = wrap(input.frame[0] + direction);
+        // Behind a leader that drives on, a slow follower is the law's: it has more reach than the tracker.
+        let free = smooth((leader_speed - FREES[0]) / (FREES[1] - FREES[0]));
+        let free_speed = WHOLE[1] * free;
+        // Steered wheels turn only while they roll: who heads away from its place would brake, and stand there.
+        let keeps_on = SPEED_GAIN * (free_speed - v);
+        let drives_on = input.steered && law.acceleration < keeps_on;
+        let law = if drives_on {
+            Command { acceleration: keeps_on, turn_rate: round(law.turn_rate, off) }
+        } else {
+            law
+        };
         let wanted = speed * math::cos(off) + AHEAD[0] * ahead.clamp(-AHEAD[1], AHEAD[1]);
         let turn = input.frame[1]
             + speed * (ASIDE[0] * aside.clamp(-ASIDE[1], ASIDE[1]) + 2.0 * ASIDE[0].sqrt() * math::sin(off));
@@ -144,16 +160,20 @@ impl Standing {
         );
         let damping = v * v / (v * v + DAMPING_SPEED * DAMPING_SPEED);
         let tamed = bounded_command(Command { turn_rate: law.turn_rate * damping, ..law }, v, TURN_MOST[1]);
-        // Behind a leader that drives on, a slow follower is the law's: it has more reach than the tracker.
-        let free = smooth((leader_speed - FREES[0]) / (FREES[1] - FREES[0]));
-        let slower = leader_speed.min(v + WHOLE[1] * free);
+        let slower = leader_speed.min(v + free_speed);
         let heads = smooth((TURNED_MOST - off.abs()) / TURNED_WIDTH).max(free);
         let [share, whole] = [BLEND, WHOLE].map(|[from, to]| smooth((slower - from) / (to - from)) * heads);
         if whole >= 1.0 {
-            return (law, MotionPhase::Law);
+            return (law, if drives_on { MotionPhase::Track } else { MotionPhase::Law });
         }
         (mix(track, mix(tamed, law, whole), share), MotionPhase::Track)
     }
+}
+
+/// A turn rate with which a follower that heads away by more than a right angle turns round: one that heads straight away is asked
+/// for none.
+fn round(turn_rate: f64, off: f64) -> f64 {
+    if off.abs() < FRAC_PI_2 { turn_rate } else { turn_rate.abs().max(TURNS_ROUND).copysign(turn_rate) }
 }
 
 /// From `a` at share 0 to `b` at share 1.
@@ -209,7 +229,14 @@ mod tests {
         [v, leader, acceleration]: [f64; 3],
         place: [f64; 2],
     ) -> StandingInput<'_> {
-        StandingInput { set_point, frame: [0.0; 2], place, own_speed: v, leader: [leader, acceleration] }
+        StandingInput {
+            set_point,
+            frame: [0.0; 2],
+            place,
+            own_speed: v,
+            leader: [leader, acceleration],
+            steered: false,
+        }
     }
 
     /// Commands of an independent implementation in Python.
@@ -266,6 +293,31 @@ mod tests {
         let law = Command { acceleration: -9.0, turn_rate: 11.0 };
         let found = Standing::default().command(law, &input(&goal, [0.6, 0.6, 0.0], [1.5, 2.0]));
         assert_eq!(found, (law, MotionPhase::Law));
+    }
+
+    /// Its place is behind it, and it can only get there by turning round, which its wheels do while they roll.
+    #[test]
+    fn steered_wheels_drive_on_behind_a_leader_that_does() {
+        let goal = SetPoint { value: [2.0, 2.3], ..SetPoint::default() };
+        let law = Command { acceleration: -5.0, turn_rate: -824.0 };
+        let on = |v: f64, leader: f64| StandingInput {
+            steered: true,
+            ..input(&goal, [v, leader, 0.0], [3.0, 2.0])
+        };
+        let standing = Standing::default();
+        assert_eq!(
+            standing.command(law, &on(0.0, 0.8)),
+            (Command { acceleration: 3.0, ..law }, MotionPhase::Track)
+        );
+        // From above it brakes to that speed, and where the law brakes less it is left alone.
+        assert_eq!(standing.command(law, &on(0.8, 0.8)).0.acceleration, 6.0 * (0.5 - 0.8));
+        let gentle = Command { acceleration: -1.0, turn_rate: 0.2 };
+        assert_eq!(standing.command(gentle, &on(0.8, 0.8)), (gentle, MotionPhase::Law));
+        // Behind a leader that stops it stops.
+        assert!(standing.command(law, &on(0.3, 0.1)).0.acceleration < 0.0);
+        // Unicycles turn on the spot.
+        let unicycle = input(&goal, [0.0, 0.8, 0.0], [3.0, 2.0]);
+        assert_eq!(standing.command(law, &unicycle), (law, MotionPhase::Law));
     }
 
     /// What the law asks for at rest may be anything.

@@ -7,8 +7,8 @@ use vocabulary::math;
 /// The scene of a map: seven in a V from one corner to the other.
 pub(crate) fn trial_scene(seed: u64, count: usize, vehicle: &str) -> String {
     let map = trial::map(seed, count);
-    // On wheels: steering takes its time, and with a steep tanh headings swing.
-    let gains = if vehicle == "car" { "k = 2.0\nbeta = 1.5\nslope = 2.0" } else { "" };
+    // On wheels with the gains of `cars-seven-v`: steering takes its time.
+    let gains = if vehicle == "car" { "k = 2.0\nbeta = 1.5\nslope = 8.0" } else { "" };
     let mut text = format!(
         r#"schema = 1
 title = "Map {seed}"
