@@ -149,7 +149,7 @@ impl EdgeLaw {
             place: self.seen_place(memory, seen),
             own_speed: seen.own_speed,
             leader: [memory.speed, memory.acceleration],
-            steered: false,
+            turns_at_most: f64::INFINITY,
         })
     }
 

@@ -438,7 +438,9 @@ impl Formation {
         let memory = &mut state.memories[first];
         if let Some(input) = parameters.standing_input(memory, &views[0].place, seen) {
             let leader = [memory.speed_now(), memory.acceleration];
-            let input = StandingInput { leader, steered: limits.curvature_max.is_finite(), ..input };
+            let steered = limits.curvature_max.is_finite();
+            let turns_at_most = if steered { limits.turn_rate_at(seen.own_speed) } else { f64::INFINITY };
+            let input = StandingInput { leader, turns_at_most, ..input };
             (asked, phase) = memory.standing.command(asked, &input);
         }
         if let Some(hand_over) = &mut memory.hand_over {

@@ -34,8 +34,8 @@ pub(crate) struct StandingInput<'a> {
     pub own_speed: f64,
     /// What the leader is believed to do, m/s and m/s².
     pub leader: [f64; 2],
-    /// Whether it turns on steered wheels.
-    pub steered: bool,
+    /// How fast its steered wheels turn it at its speed, rad/s; infinite for who turns on the spot.
+    pub turns_at_most: f64,
 }
 
 /// Below the first speed the tracker acts alone, above the second the law, damped and within the rule's bounds, m/s.
@@ -142,7 +142,9 @@ impl Standing {
         let free_speed = WHOLE[1] * free;
         // Steered wheels turn only while they roll: who heads away from its place would brake, and stand there.
         let keeps_on = SPEED_GAIN * (free_speed - v);
-        let drives_on = input.steered && law.acceleration < keeps_on;
+        let turns = law.turn_rate.abs() > input.turns_at_most
+            || (off.abs() > FRAC_PI_2 && input.turns_at_most.is_finite());
+        let drives_on = turns && law.acceleration < keeps_on;
         let law = if drives_on {
             Command { acceleration: keeps_on, turn_rate: round(law.turn_rate, off) }
         } else {
@@ -235,7 +237,7 @@ mod tests {
             place,
             own_speed: v,
             leader: [leader, acceleration],
-            steered: false,
+            turns_at_most: f64::INFINITY,
         }
     }
 
@@ -301,7 +303,7 @@ mod tests {
         let goal = SetPoint { value: [2.0, 2.3], ..SetPoint::default() };
         let law = Command { acceleration: -5.0, turn_rate: -824.0 };
         let on = |v: f64, leader: f64| StandingInput {
-            steered: true,
+            turns_at_most: 1.8 * v,
             ..input(&goal, [v, leader, 0.0], [3.0, 2.0])
         };
         let standing = Standing::default();
@@ -309,9 +311,9 @@ mod tests {
             standing.command(law, &on(0.0, 0.8)),
             (Command { acceleration: 3.0, ..law }, MotionPhase::Track)
         );
-        // From above it brakes to that speed, and where the law brakes less it is left alone.
+        // From above it brakes to that speed, and where its wheels turn it as asked the law is left alone.
         assert_eq!(standing.command(law, &on(0.8, 0.8)).0.acceleration, 6.0 * (0.5 - 0.8));
-        let gentle = Command { acceleration: -1.0, turn_rate: 0.2 };
+        let gentle = Command { acceleration: -2.5, turn_rate: 0.2 };
         assert_eq!(standing.command(gentle, &on(0.8, 0.8)), (gentle, MotionPhase::Law));
         // Behind a leader that stops it stops.
         assert!(standing.command(law, &on(0.3, 0.1)).0.acceleration < 0.0);
