@@ -129,7 +129,10 @@ impl RunUnderWay {
 enum RecordSink {
     #[cfg(not(target_family = "wasm"))]
     Disk(Box<Recorder>),
-    Memory { metrics: Box<MetricsBuilder>, digest: Box<Digest> },
+    Memory {
+        metrics: Box<MetricsBuilder>,
+        digest: Box<Digest>,
+    },
 }
 
 impl RecordSink {

@@ -285,8 +285,7 @@ fn map_of(
     sides: [&ChartSide; 2],
     quantity: ChartQuantity,
 ) -> HeatMap {
-    let values: Vec<f64> =
-        shares(design, cells, &axes).iter().map(|cell| quantity.range(cell)[1]).collect();
+    let values: Vec<f64> = shares(design, cells, &axes).iter().map(|cell| quantity.range(cell)[1]).collect();
     let map = map(design, sides, &values, quantity.label());
     let ChartQuantity::Measure(which) = quantity else {
         return HeatMap { range: Some([0.0, 1.0]), ..map };

@@ -143,9 +143,8 @@ fn values(row: &RunRow) -> Vec<(Option<&'static str>, RowValue<'_>)> {
         (Some("reason"), Text(reason)),
         (Some("contacts"), Whole(*contacts)),
     ]);
-    values.extend(
-        MEASURES.iter().zip(measures).map(|(measure, value)| (Some(measure.column), Number(*value))),
-    );
+    values
+        .extend(MEASURES.iter().zip(measures).map(|(measure, value)| (Some(measure.column), Number(*value))));
     values.extend([(Some("digest"), Text(digest)), (Some("wall_time_s"), Number(*wall_time))]);
     values
 }
