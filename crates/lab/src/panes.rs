@@ -72,7 +72,7 @@ pub fn arrangement() -> Tree<Pane> {
     let (formation, edge) = (tabs(&["Formation"]), tabs(&["Edge", "Branches"]));
     let (law, more) = (
         tabs(&["Law", "Observer", "Limits", "Safety"]),
-        tabs(&["Sensing", "World", "Film", "Log", "Law text", "Sweep"]),
+        tabs(&["Sensing", "World", "Sweep", "Film", "Log", "Law text"]),
     );
     let plots = [
         tabs(&["Errors"]),

@@ -9,6 +9,7 @@ use scene::{Override, Scene, Study};
 use std::path::Path;
 use std::sync::Arc;
 use sweeps::Experiment;
+use vocabulary::counted;
 
 /// A line for a shell.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -93,6 +94,12 @@ impl AppState {
                 result.push(*row);
                 if result.done == result.runs() && sweep.progress == SweepProgress::Running {
                     sweep.progress = SweepProgress::Complete;
+                    let runs = usize::try_from(result.runs()).unwrap_or(usize::MAX);
+                    let met: u64 = result.cells.iter().map(|cell| cell.met).sum();
+                    self.note(format!(
+                        "Sweep of {}: {met} meet what the scene expects",
+                        counted(runs, "run")
+                    ));
                 }
             }
             SweepEvent::Ready(_) | SweepEvent::Refused(..) => {}
@@ -196,7 +203,12 @@ fn first_difference(before: &Scene, now: Scene) -> Option<String> {
     }
     let path = |text: String| text.split('`').nth(1).map(str::to_owned);
     let found = match before.sets_to(&now) {
-        Ok(sets) => sets.into_iter().next().map(|set| set.replace('=', " = ")),
+        Ok(sets) => sets.first().and_then(|set| set.split_once('=')).map(|(key, value)| {
+            // Of a pair that is equal one is enough.
+            let pair = value.trim_matches(['[', ']']).split_once(", ");
+            let value = pair.filter(|(a, b)| a == b).map_or(value, |(a, _)| a);
+            format!("{key} = {value}")
+        }),
         Err(obstacles) => obstacles.into_iter().next().and_then(path),
     };
     Some(found.unwrap_or_else(|| "changes".to_owned()))

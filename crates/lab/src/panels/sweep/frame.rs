@@ -65,7 +65,13 @@ impl SweepFrame {
             painter.text(place, Align2::RIGHT_CENTER, &tick.label, font(), colour);
         }
         let strong = ui.visuals().strong_text_color();
-        painter.text(pos2(self.outer.left() + 2.0, inner.top() - 5.0), Align2::LEFT_BOTTOM, labels[1], font(), strong);
+        painter.text(
+            pos2(self.outer.left() + 2.0, inner.top() - 5.0),
+            Align2::LEFT_BOTTOM,
+            labels[1],
+            font(),
+            strong,
+        );
         let foot = pos2(inner.center().x, inner.bottom() + TICK + SIZE + 5.0);
         painter.text(foot, Align2::CENTER_TOP, labels[0], font(), strong);
     }

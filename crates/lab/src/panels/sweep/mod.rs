@@ -14,6 +14,7 @@ use crate::action::Action;
 use crate::app_state::AppState;
 use crate::app_state::sweep_plan::SweepPlan;
 use crate::app_state::sweep_state::SweepResult;
+use crate::numbers::plain;
 use eframe::egui::{Id, RichText, ScrollArea, Ui};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
@@ -143,7 +144,15 @@ impl SweptCells<'_> {
             .zip(self.point(cell).values)
             .map(|(parameter, value)| (parameter.key.clone(), value))
             .collect();
-        let words = values.iter().map(|(key, value)| format!("{key} = {}", value.trim_matches('"')));
+        let words = values.iter().map(|(key, value)| format!("{key} = {}", shown_value(value)));
         Action::Set { what: format!("From the sweep: {}", words.collect::<Vec<_>>().join(", ")), values }
     }
+}
+
+/// A value of an override, to five digits.
+fn shown_value(value: &str) -> String {
+    let value = value.trim_matches('"');
+    let (number, unit) = value.strip_suffix(" deg").map_or((value, ""), |number| (number, "°"));
+    let short = number.parse().map_or_else(|_| number.to_owned(), plain);
+    format!("{}{unit}", short.replace('-', "−"))
 }

@@ -5,6 +5,7 @@ use crate::action::Action;
 use crate::app_state::AppState;
 use crate::app_state::sweep_plan::{SweepPlan, SweepSide};
 use crate::app_state::sweep_state::{SweepProgress, SweepResult};
+use crate::numbers::plain;
 use crate::panels::{chosen, on_click};
 use eframe::egui::{self, CollapsingHeader, ComboBox, DragValue, RichText, TextEdit, Ui};
 use sweeps::{ChartQuantity, MEASURES};
@@ -40,7 +41,10 @@ pub(super) fn show(
     ui.horizontal(|ui| {
         before(ui, "Shows");
         let seeds = ui.available_width() - 96.0;
-        quantity(ui, &mut new.quantity, seeds);
+        ui.scope(|ui| {
+            ui.set_max_width(seeds);
+            quantity(ui, &mut new.quantity, seeds);
+        });
         ui.label("seeds");
         number(ui, DragValue::new(&mut new.seeds).range(1..=MOST).speed(0.1), "Seeds");
     });
@@ -102,7 +106,7 @@ fn key(ui: &mut Ui, keys: &SweepKeys, plan: &mut SweepPlan, place: usize, name: 
     ui.horizontal(|ui| {
         before(ui, name);
         let combo = ComboBox::from_id_salt("key").selected_text(&shown).width(ui.available_width() - 8.0);
-        let response = combo.height(360.0).show_ui(ui, |ui| {
+        let response = combo.height(560.0).show_ui(ui, |ui| {
             if place > 0 && ui.selectable_label(now.is_none(), "one key only").clicked() {
                 pick = Some(None);
             }
@@ -159,7 +163,8 @@ fn range(ui: &mut Ui, side: &mut SweepSide, name: &str) {
         let logarithmic = side.logarithmic;
         let end = |ui: &mut Ui, value: &mut f64, which: &str| {
             let speed = if logarithmic { 0.01 * value.abs().max(1e-9) } else { speed };
-            let drag = DragValue::new(value).speed(speed).max_decimals(6).suffix(unit);
+            let drag = DragValue::new(value).speed(speed).suffix(unit);
+            let drag = drag.custom_formatter(|number, _| plain(number).replace('-', "−"));
             number(ui, drag, &format!("{name} {which}"));
         };
         end(ui, &mut side.from, "from");

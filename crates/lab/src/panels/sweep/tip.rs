@@ -1,6 +1,6 @@
 //! What the runs of a cell show, while the pointer rests on it.
 
-use super::SweptCells;
+use super::{SweptCells, shown_value};
 use crate::numbers::{fixed, plain};
 use eframe::egui::{RichText, Ui};
 use std::collections::BTreeMap;
@@ -11,8 +11,8 @@ use vocabulary::{Word, counted};
 pub(super) fn show(ui: &mut Ui, shown: &SweptCells<'_>, cell: u64) {
     ui.set_max_width(340.0);
     for (place, value) in shown.point(cell).values.iter().enumerate() {
-        let value = value.trim_matches('"').replace(" deg", "°").replace('-', "−");
-        ui.label(RichText::new(format!("{} = {value}", shown.label(place))).strong());
+        let text = format!("{} = {}", shown.label(place), shown_value(value));
+        ui.label(RichText::new(text).strong());
     }
     let rows = shown.result.rows(cell);
     let Some(summary) = shown.cell(cell).filter(|_| !rows.is_empty()) else {
