@@ -274,8 +274,18 @@ pub fn heat_map(design: &Design, cells: &[CellSummary], quantity: ChartQuantity)
 pub fn curve(design: &Design, cells: &[CellSummary], quantity: ChartQuantity) -> Option<StudyCurve> {
     let [axis] = design.axes() else { return None };
     let side = ChartSide::of(design, axis)?;
-    let all = shares(design, cells, &[0]);
-    Some(StudyCurve { axis: side.axis, values: all.iter().map(|cell| quantity.range(cell)).collect() })
+    Some(StudyCurve { axis: side.axis, values: ranges(design, cells, quantity) })
+}
+
+/// Lower end, middle and upper end of each cell of a study; NaN of those that have no runs.
+fn ranges(design: &Design, cells: &[CellSummary], quantity: ChartQuantity) -> Vec<[f64; 3]> {
+    let mut values = vec![[f64::NAN; 3]; design.study().cells() as usize];
+    for cell in cells {
+        if let Some(value) = values.get_mut(cell.cell as usize) {
+            *value = quantity.range(cell);
+        }
+    }
+    values
 }
 
 fn map_of(
@@ -285,7 +295,11 @@ fn map_of(
     sides: [&ChartSide; 2],
     quantity: ChartQuantity,
 ) -> HeatMap {
-    let values: Vec<f64> = shares(design, cells, &axes).iter().map(|cell| quantity.range(cell)[1]).collect();
+    let values: Vec<f64> = if axes.len() == design.axes().len() {
+        ranges(design, cells, quantity).iter().map(|range| range[1]).collect()
+    } else {
+        shares(design, cells, &axes).iter().map(|cell| quantity.range(cell)[1]).collect()
+    };
     let map = map(design, sides, &values, quantity.label());
     let ChartQuantity::Measure(which) = quantity else {
         return HeatMap { range: Some([0.0, 1.0]), ..map };

@@ -3,7 +3,7 @@
 use super::SweptCells;
 use super::frame::{SweepFrame, part, shade};
 use super::tip;
-use eframe::egui::{self, Color32, Rect, Sense, Stroke, StrokeKind, Ui, vec2};
+use eframe::egui::{self, Color32, Mesh, Rect, Sense, Stroke, StrokeKind, Ui, vec2};
 use figures::{HeatMap, MapSide, Tick};
 
 /// Draws the map; the cell that was clicked.
@@ -29,7 +29,7 @@ pub(super) fn show(ui: &mut Ui, shown: &SweptCells<'_>, mut map: HeatMap, high: 
     let painter = ui.painter_at(outer);
     painter.rect_filled(frame.inner, 0.0, ui.visuals().extreme_bg_color);
     let pointed = response.hover_pos().and_then(cell_at);
-    let mut marked = None;
+    let (mut marked, mut coloured) = (None, Mesh::default());
     for (row, y) in sides[1].edges.windows(2).enumerate() {
         for (column, x) in sides[0].edges.windows(2).enumerate() {
             let cell = design.cell_at(&[column as u64, row as u64]);
@@ -39,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, shown: &SweptCells<'_>, mut map: HeatMap, high: 
             let value = map.cells.get(row * map.across.values.len() + column).copied().unwrap_or(f64::NAN);
             match bar.at(value).filter(|_| value.is_finite()) {
                 Some(at) => {
-                    painter.rect_filled(rect, 0.0, shade(map.colour_at(at), shown.faded));
+                    coloured.add_colored_rect(rect, shade(map.colour_at(at), shown.faded));
                 }
                 // The runs have been made, and none has a number.
                 None if shown.cell(cell).is_some_and(|cell| cell.runs > 0) => cross(ui, &painter, rect),
@@ -50,6 +50,7 @@ pub(super) fn show(ui: &mut Ui, shown: &SweptCells<'_>, mut map: HeatMap, high: 
             }
         }
     }
+    painter.add(coloured);
     frame.draw(ui, &ticks(&sides[0], frame.inner.width() / 44.0), &up, [&map.across.label, &map.up.label]);
     frame.draw_bar(ui, &bar_ticks, |at| shade(map.colour_at(at), shown.faded));
     if let Some(rect) = marked {

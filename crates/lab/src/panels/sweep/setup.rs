@@ -14,6 +14,8 @@ use vocabulary::counted;
 /// Most values of a side, and most runs of a combination.
 const MOST: u32 = 1000;
 const NAMES: [&str; 2] = ["Across", "Up"];
+/// Most letters of the line that names what varies.
+const LONGEST: usize = 38;
 /// Width of what stands before a choice, points.
 const NAME: f32 = 44.0;
 
@@ -72,12 +74,14 @@ pub(super) fn show(
 /// What varies, in a line.
 fn summary(keys: &SweepKeys, plan: &SweepPlan) -> String {
     let name = |side: &SweepSide| match keys.called(&side.key) {
-        Some(known) => known.name.clone(),
+        Some(known) => known.short(),
         None => side.key.clone(),
     };
     let names: Vec<String> = plan.sides.iter().map(name).collect();
     let counts: Vec<String> = plan.sides.iter().map(|side| side.count.to_string()).collect();
-    format!("{}: {} values", names.join(" × "), counts.join(" × "))
+    let all = format!("{} values: {}", counts.join(" × "), names.join(", "));
+    // A line that is too long would widen the panel.
+    if all.chars().count() <= LONGEST { all } else { all.chars().take(LONGEST - 1).chain(['…']).collect() }
 }
 
 /// The keys with their ranges.
@@ -106,7 +110,7 @@ fn key(ui: &mut Ui, keys: &SweepKeys, plan: &mut SweepPlan, place: usize, name: 
     ui.horizontal(|ui| {
         before(ui, name);
         let combo = ComboBox::from_id_salt("key").selected_text(&shown).width(ui.available_width() - 8.0);
-        let response = combo.height(560.0).show_ui(ui, |ui| {
+        let response = combo.height(640.0).show_ui(ui, |ui| {
             if place > 0 && ui.selectable_label(now.is_none(), "one key only").clicked() {
                 pick = Some(None);
             }

@@ -27,8 +27,9 @@ pub(crate) struct SweepKeys {
     /// What can be chosen.
     pub(crate) keys: Vec<SweepKey>,
     values: SceneText,
-    /// The robot whose values stand for those of all.
-    robot: String,
+    written: SceneText,
+    /// Those of followers stand for those of all robots.
+    robots: Vec<String>,
 }
 
 /// Number of values of a key at first.
@@ -39,7 +40,8 @@ const ROWS: [Row; 21] = [
     (law::GAIN, |_, f| f.law.built_in().is_some()),
     (law::ROBUST, |_, f| robust(f)),
     (law::SLOPE, |_, f| robust(f) && f.law.switching == SwitchingKind::Tanh),
-    (law::EPSILON, |_, f| estimates(f) && !(measures(f) && f.observer.adaptive)),
+    // Whoever gives it ends its adaptation, in a sweep as in a scene.
+    (law::EPSILON, |_, f| estimates(f)),
     (law::ALPHA_ONE, |_, f| estimates(f)),
     (law::ALPHA_TWO, |_, f| estimates(f)),
     (law::HEADING_LENGTH, |_, f| f.law.heading == HeadingReference::Path),
@@ -79,11 +81,13 @@ impl SweepKeys {
     /// The keys of a scene, whose text this is.
     pub(crate) fn of(scene: &Scene, text: &str) -> Option<Self> {
         let (values, written) = (SceneText::parse(&scene.to_toml()).ok()?, SceneText::parse(text).ok()?);
-        let first = scene.robots.iter().find(|robot| robot.role.follow().is_some());
-        let robot = first.or(scene.robots.first()).map_or_else(String::new, |robot| robot.name.clone());
-        let mut all = Self { keys: vec![], values, robot };
-        if let Some((robot, follow)) = first.and_then(|robot| Some((robot, robot.role.follow()?))) {
-            all.list_shared(scene, &written, robot, follow);
+        let (followers, leads): (Vec<&Robot>, Vec<&Robot>) =
+            scene.robots.iter().partition(|robot| robot.role.follow().is_some());
+        let robots = followers.iter().chain(&leads).map(|robot| robot.name.clone()).collect();
+        let mut all = Self { keys: vec![], values, written, robots };
+        if let Some((robot, follow)) = followers.first().and_then(|robot| Some((robot, robot.role.follow()?)))
+        {
+            all.list_shared(scene, robot, follow);
         }
         all.list_places(scene);
         all.add("time.period".to_owned(), "Control period".to_owned(), "s", None);
@@ -91,14 +95,14 @@ impl SweepKeys {
     }
 
     /// Keys of laws, observers, sensing, vehicles and filters: for all robots, and for those that have values of their own.
-    fn list_shared(&mut self, scene: &Scene, written: &SceneText, robot: &Robot, follow: &Follow) {
+    fn list_shared(&mut self, scene: &Scene, robot: &Robot, follow: &Follow) {
         for (row, _) in ROWS.iter().filter(|(_, when)| when(robot, follow)) {
             let Symbol { sign, name, unit, .. } = row.symbol;
             let name = format!("{name} {sign}");
             self.add(row.key.to_owned(), name.clone(), unit, Some(row.range));
             for robot in &scene.robots {
                 let own = format!("robots.{}.{}", robot.name, row.key);
-                if written.get(&own).is_some() {
+                if self.written.get(&own).is_some() {
                     self.add(own, format!("{name} of {}", robot.name), unit, Some(row.range));
                 }
             }
@@ -138,7 +142,8 @@ impl SweepKeys {
                 }
                 Role::Lead { path: Path::Goal { .. } | Path::Tour { .. } } => {}
                 Role::Lead { .. } => {
-                    for (key, name, unit) in [("speed", "Speed", "m/s"), ("turn_rate", "Turn rate", "rad/s")]
+                    for (key, name, unit) in
+                        [("speed", "Speed v", "m/s"), ("turn_rate", "Turn rate ω", "rad/s")]
                     {
                         self.add(format!("robots.{own}.path.{key}"), format!("{name} of {own}"), unit, None);
                     }
@@ -162,7 +167,10 @@ impl SweepKeys {
     fn number(&self, key: &str) -> Option<f64> {
         let table = key.split('.').next()?;
         let text = if SHARED.contains(&table) {
-            self.values.get(&format!("robots.{}.{key}", self.robot))?
+            // Of a robot that has no value of its own.
+            let own = |robot: &&String| self.written.get(&format!("robots.{robot}.{key}")).is_some();
+            let robot = self.robots.iter().find(|robot| !own(robot)).or(self.robots.first())?;
+            self.values.get(&format!("robots.{robot}.{key}"))?
         } else {
             self.values.get(key)?
         };
@@ -217,6 +225,12 @@ impl SweepKeys {
 }
 
 impl SweepKey {
+    /// Its symbol, where there is little room: the last word of its name.
+    pub(crate) fn short(&self) -> String {
+        let (own, rest) = self.name.split_at(self.name.find(" of ").unwrap_or(self.name.len()));
+        format!("{}{rest}", own.rsplit(' ').next().unwrap_or(own))
+    }
+
     /// Its words on an axis and in a list.
     pub(crate) fn label(&self) -> String {
         let Self { name, unit, .. } = self;

@@ -36,7 +36,7 @@ fn point(panel: &mut Panel, name: &str, [x, y]: [f32; 2]) {
 #[test]
 fn the_keys_of_the_scene_can_be_chosen_with_ranges_around_them() {
     let mut panel = panel(app_state(&short(), 1), sweep::show);
-    assert_says(&panel, &["Gain K × Latency τ: 9 × 9 values", "▶ Start 81 runs", "Copy command"]);
+    assert_says(&panel, &["9 × 9 values: K, ε", "▶ Start 81 runs", "Copy command"]);
     let actions = enter(&mut panel, Role::SpinButton, "Across values", "5");
     let now = planned(&actions).clone();
     assert_eq!((now.sides[0].values(), now.runs()), ("log:0.5..20/5".to_owned(), 45));
