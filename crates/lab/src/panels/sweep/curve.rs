@@ -33,7 +33,10 @@ pub(super) fn show(ui: &mut Ui, shown: &SweptCells<'_>, mut curve: StudyCurve, h
     };
     let [low, middle, top] = [0, 1, 2].map(stretches);
     let colour = if shown.faded { ui.visuals().weak_text_color() } else { ui.visuals().selection.bg_fill };
-    painter.extend(band(&low, &top, colour.gamma_multiply(0.25)));
+    // Single runs have no spread.
+    if shown.result.cells.iter().any(|cell| cell.runs > 1) {
+        painter.extend(band(&low, &top, colour.gamma_multiply(0.25)));
+    }
     for pair in middle.windows(2) {
         if let [Some(a), Some(b)] = pair {
             painter.line_segment([*a, *b], Stroke::new(1.6, colour));

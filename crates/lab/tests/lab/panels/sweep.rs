@@ -26,6 +26,13 @@ fn swept(sides: usize) -> Panel {
     panel(app_state, sweep::show)
 }
 
+/// What a choice asks for, wherever it stands in its list.
+fn choose(panel: &mut Panel, list: &str, choice: &str) -> Vec<Action> {
+    assert!(click(panel, Role::ComboBox, list).is_empty());
+    panel.get_by_role_and_label(Role::Button, choice).click_accesskit();
+    asked(panel)
+}
+
 /// The pointer at a share of a widget's width and height.
 fn point(panel: &mut Panel, name: &str, [x, y]: [f32; 2]) {
     let rect = panel.get_by_role_and_label(Role::Button, name).rect();
@@ -43,12 +50,9 @@ fn the_keys_of_the_scene_can_be_chosen_with_ranges_around_them() {
     panel.state_mut().app_state.act(&Action::PlanSweep(now));
     let actions = click(&mut panel, Role::CheckBox, "Across log");
     assert_eq!(planned(&actions).sides[0].values(), "0.5..20/5");
-    click(&mut panel, Role::ComboBox, "Up key");
-    let choice = "Bearing ψ of right (°)";
-    let actions = click(&mut panel, Role::Button, choice);
+    let actions = choose(&mut panel, "Up key", "Bearing ψ of right (°)");
     assert_eq!(planned(&actions).sides[1].values(), "-180..-90 deg/9");
-    click(&mut panel, Role::ComboBox, "Up key");
-    let actions = click(&mut panel, Role::Button, "one key only");
+    let actions = choose(&mut panel, "Up key", "one key only");
     assert_eq!(planned(&actions).sides.len(), 1);
     let actions = click(&mut panel, Role::Button, "▶ Start 45 runs");
     assert!(matches!(actions.last(), Some(Action::StartSweep(_))), "{actions:?}");
@@ -57,8 +61,7 @@ fn the_keys_of_the_scene_can_be_chosen_with_ranges_around_them() {
 #[test]
 fn a_key_that_is_not_in_the_list_can_be_typed() {
     let mut panel = panel(app_state(&short(), 1), sweep::show);
-    click(&mut panel, Role::ComboBox, "Across key");
-    let actions = click(&mut panel, Role::Button, "another key …");
+    let actions = choose(&mut panel, "Across key", "another key …");
     let free = planned(&actions).clone();
     panel.state_mut().app_state.act(&Action::PlanSweep(free));
     let actions = enter(&mut panel, Role::TextInput, "Across path", "robots.left.speed");
