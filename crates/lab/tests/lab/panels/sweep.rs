@@ -3,7 +3,7 @@
 use super::{Panel, asked, assert_says, click, enter, panel, says};
 use crate::common::app_state;
 use crate::sweeps::{plan, short, side, sweep, sweep_until};
-use eframe::egui::{accesskit::Role, vec2};
+use eframe::egui::{Key, accesskit::Role, vec2};
 use egui_kittest::kittest::Queryable;
 use lab::action::Action;
 use lab::app_state::AppState;
@@ -30,7 +30,11 @@ fn swept(sides: usize) -> Panel {
 fn choose(panel: &mut Panel, list: &str, choice: &str) -> Vec<Action> {
     assert!(click(panel, Role::ComboBox, list).is_empty());
     panel.get_by_role_and_label(Role::Button, choice).click_accesskit();
-    asked(panel)
+    let actions = asked(panel);
+    // A list stays open for those who do not click with a mouse.
+    panel.key_press(Key::Escape);
+    panel.run();
+    actions
 }
 
 /// The pointer at a share of a widget's width and height.
@@ -64,6 +68,7 @@ fn a_key_that_is_not_in_the_list_can_be_typed() {
     let actions = choose(&mut panel, "Across key", "another key …");
     let free = planned(&actions).clone();
     panel.state_mut().app_state.act(&Action::PlanSweep(free));
+    panel.run();
     let actions = enter(&mut panel, Role::TextInput, "Across path", "robots.left.speed");
     let typed = planned(&actions).clone();
     assert_eq!(
