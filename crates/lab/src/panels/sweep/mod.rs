@@ -84,7 +84,7 @@ fn result(
     let top = ui.cursor().top();
     let outdated = app_state.sweep_outdated();
     if let Some(what) = &outdated {
-        let text = format!("Of the scene as it was before {what}. Start again for the present one.");
+        let text = format!("Of the scene as it was before {what}: run it again.");
         ui.label(RichText::new(text).color(ui.visuals().warn_fg_color));
     }
     let high = (high - (ui.cursor().top() - top)).max(LEAST);

@@ -102,11 +102,11 @@ fn a_map_tells_of_its_cells_and_leads_there() {
     let app_state = &mut panel.state_mut().app_state;
     assert!(app_state.act(&actions[0]));
     panel.run();
-    assert!(!says(&panel, "Start again"), "the map is of this scene still");
+    assert!(!says(&panel, "run it again"), "the map is of this scene still");
     let other = ("observer.alpha1".to_owned(), "2.5".to_owned());
     panel.state_mut().app_state.act(&Action::Set { what: "α₁".to_owned(), values: vec![other] });
     panel.run();
-    assert_says(&panel, &["Of the scene as it was before robots.left.observer.alpha1 = 2.5. Start again"]);
+    assert_says(&panel, &["Of the scene as it was before robots.left.observer.alpha1 = 2.5: run it again"]);
 }
 
 #[test]
