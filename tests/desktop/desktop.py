@@ -144,6 +144,8 @@ AWAY = (1180, 560)
 VIEW_TOP = 42
 # The tab of the panel Safety, and the box in it that switches filters, when the arrangement is the first one.
 SAFETY, FILTER = (1205, 54), (974, 112)
+# The tab of the panel Sweep, its button Start, and a cell of its map with a large gain.
+SWEEP, START, CELL = (1140, 324), (1020, 515), (1225, 520)
 # As no window manager does it.
 DESTROY = """
 import ctypes, sys
@@ -578,6 +580,34 @@ class Test:
         check(code == 0, f"exit code {code}: {lab.err.read_text()}")
         return "off, and on again"
 
+    def sweeps(self):
+        """A sweep of two keys in its panel, and a click into its map, which is undone."""
+        shutil.copy(SCENES / "circle-three.toml", self.folder)
+        lab = Lab(self, "circle-three.toml", "--paused")
+        lab.still()
+        lab.screen.click(*SWEEP)
+        lab.still()
+        self.see("sweep-choices")
+        lab.screen.click(*START)
+        told = lab.hears(r"^log .*Sweep of 81 runs: (\d+) meet", 180)
+        check(10 < int(told.group(1)) < 71, told.group(0))
+        lab.screen.move(*AWAY)
+        lab.still()
+        self.see("sweep-map")
+        lab.screen.click(*CELL)
+        lab.hears(r"^log .*From the sweep: law.k = ")
+        law = tomllib.loads(wait("unsaved work", self.kept, 15))
+        check(law["law"]["k"] > 10.0, f"the gain is {law['law']['k']}")
+        lab.screen.move(*AWAY)
+        lab.still()
+        self.see("sweep-gone-to")
+        lab.key("ctrl+z")
+        lab.hears(r"^log .*Undo: From the sweep")
+        lab.close()
+        code = lab.ended()
+        check(code == 0, f"exit code {code}: {lab.err.read_text()}")
+        return told.group(0).removeprefix("log ")
+
     def drags_goal(self):
         """A goal, while nothing moves: the way on the ground leads to where it is put, at once."""
         scene = self.folder / "maze-three.toml"
@@ -727,6 +757,7 @@ def main():
         test.step("Typing faster than the window draws", test.types)
         test.step("Closing in the middle of a film", test.closes_in_a_film)
         test.step("Switching a safety filter", test.keeps_apart)
+        test.step("Sweeping two keys", test.sweeps)
         test.step("Dragging a goal", test.drags_goal)
         test.step("Opening a broken scene", test.shows_faults)
         test.step("Ctrl C in the terminal", test.is_interrupted)

@@ -93,6 +93,7 @@ const ARROWS: [(&str, &[&str]); 24] = [
             "formation",
             "simulation",
             "studies",
+            "sweeps",
             "metrics",
             "recording",
             "film",

@@ -5,7 +5,7 @@ use vocabulary::math;
 
 /// An axis laid out over some values.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Ruler {
+pub struct Ruler {
     scale: Scale,
     /// Values at both ends; of logarithmic axes their common logarithms.
     ends: [f64; 2],
@@ -15,10 +15,11 @@ pub(crate) struct Ruler {
 
 /// A tick; those without a label are shorter.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Tick {
+pub struct Tick {
     /// Place, 0 to 1.
-    pub(crate) at: f64,
-    pub(crate) label: String,
+    pub at: f64,
+    /// What stands at it; nothing at most ticks between others.
+    pub label: String,
 }
 
 /// Share of a horizontal axis for a zero that stands by itself.
@@ -29,7 +30,7 @@ pub(crate) const CUT: f64 = 0.62 * APART;
 impl Ruler {
     /// Over `values` and those the axis shows anyway. A zero stands apart on logarithmic axes that are `across`; where
     /// `snug`, the ends are at the outermost values.
-    pub(crate) fn new(axis: &Axis, values: impl Iterator<Item = f64>, across: bool) -> Self {
+    pub fn new(axis: &Axis, values: impl Iterator<Item = f64>, across: bool) -> Self {
         let all: Vec<f64> = values.chain(axis.show.iter().copied()).filter(|v| v.is_finite()).collect();
         let log = axis.scale == Scale::Log;
         let taken =
@@ -46,7 +47,7 @@ impl Ruler {
     }
 
     /// Place of a value, 0 to 1; `None` where it has none.
-    pub(crate) fn at(&self, value: f64) -> Option<f64> {
+    pub fn at(&self, value: f64) -> Option<f64> {
         let along = match self.scale {
             Scale::Linear => value,
             Scale::Log if value > 0.0 => math::log10(value),
@@ -69,7 +70,7 @@ impl Ruler {
     }
 
     /// About `most` labelled ticks at most, and unlabelled ones between them.
-    pub(crate) fn ticks(&self, most: usize) -> Vec<Tick> {
+    pub fn ticks(&self, most: usize) -> Vec<Tick> {
         let mut ticks = match self.scale {
             Scale::Linear => self.even(most),
             Scale::Log => self.decades(most),

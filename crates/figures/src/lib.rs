@@ -15,7 +15,8 @@ mod plan;
 mod svg;
 mod trim;
 
-pub use map::{HeatMap, MapAxis, MapLine};
+pub use axis::{Ruler, Tick};
+pub use map::{HeatMap, MapAxis, MapLine, MapSide, viridis};
 pub use plan::{Arrow, Note, Plan, PlanDots, PlanNode, PlanOutline, PlanPath, PlanStrip, Side};
 pub use svg::Rgb;
 

@@ -68,6 +68,18 @@ const COLOURS: [Rgb; 9] = [
     [0.678, 0.864, 0.190],
     [0.993, 0.906, 0.144],
 ];
+
+/// The colour at a place from 0, dark, to 1, light.
+pub fn viridis(at: f64) -> Rgb {
+    let place = at.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
+    let low = (place.floor() as usize).min(COLOURS.len() - 2);
+    let within = (place - low as f64) as f32;
+    [0, 1, 2].map(|channel| {
+        let (a, b) = (COLOURS[low][channel], COLOURS[low + 1][channel]);
+        a + within * (b - a)
+    })
+}
+
 /// Width of the bar and the gap before it, points.
 const BAR: f64 = 8.0;
 const GAP: f64 = 8.0;
@@ -77,14 +89,17 @@ const SHAPE: f64 = 0.82;
 const FOOT: f64 = 23.0;
 
 /// One side, laid out: where each cell begins and ends, 0 to 1.
-struct MapSide<'a> {
+pub struct MapSide<'a> {
     axis: &'a MapAxis,
-    ruler: Ruler,
-    edges: Vec<f64>,
+    /// From values to places.
+    pub ruler: Ruler,
+    /// Where each cell begins, and the last one ends.
+    pub edges: Vec<f64>,
 }
 
 impl<'a> MapSide<'a> {
-    fn new(axis: &'a MapAxis) -> Self {
+    /// Lays a side out.
+    pub fn new(axis: &'a MapAxis) -> Self {
         // Positions before the axis is laid out: logarithms where it is logarithmic.
         let logarithmic = axis.scale == Scale::Log && axis.values.iter().all(|value| *value > 0.0);
         let to = |value: f64| if logarithmic { math::log10(value) } else { value };
@@ -104,7 +119,7 @@ impl<'a> MapSide<'a> {
     }
 
     /// Places of labels, 0 to 1, with the labels; some have none.
-    fn ticks(&self, most: usize) -> Vec<(f64, String)> {
+    pub fn ticks(&self, most: usize) -> Vec<(f64, String)> {
         if self.axis.names.is_empty() {
             return self.ruler.ticks(most).into_iter().map(|tick| (tick.at, tick.label)).collect();
         }
@@ -185,7 +200,7 @@ impl HeatMap {
     }
 
     /// The axis of the colours.
-    fn bar(&self) -> Ruler {
+    pub fn bar(&self) -> Ruler {
         let finite = || self.cells.iter().copied().filter(|value| value.is_finite());
         let inside = |value: &f64| self.scale == Scale::Linear || *value > 0.0;
         let (low, high) = finite()
@@ -196,15 +211,13 @@ impl HeatMap {
         Ruler::new(&axis, finite(), false)
     }
 
+    /// The colour at a place of the bar, 0 to 1.
+    pub fn colour_at(&self, at: f64) -> Rgb {
+        viridis(if self.reversed { 1.0 - at } else { at })
+    }
+
     fn colour(&self, at: f64) -> String {
-        let at = if self.reversed { 1.0 - at } else { at }.clamp(0.0, 1.0);
-        let place = at * (COLOURS.len() - 1) as f64;
-        let low = (place.floor() as usize).min(COLOURS.len() - 2);
-        let within = (place - low as f64) as f32;
-        let [r, g, b] = [0, 1, 2].map(|channel| {
-            let (a, b) = (COLOURS[low][channel], COLOURS[low + 1][channel]);
-            ((a + within * (b - a)) * 255.0).round() as u8
-        });
+        let [r, g, b] = self.colour_at(at).map(|channel| (channel * 255.0).round() as u8);
         format!("#{r:02x}{g:02x}{b:02x}")
     }
 

@@ -1,5 +1,6 @@
 //! The commands of the lab. Clicks, keys and panels all produce them, so most can be given in several ways.
 
+use crate::app_state::sweep_plan::SweepPlan;
 use crate::app_state::{Selection, Tool};
 use scene::Failure;
 use std::borrow::Cow;
@@ -169,6 +170,14 @@ pub enum Action {
     SaveBranch,
     /// Close the line about a link.
     CloseStatus,
+    /// Change what a sweep varies and shows.
+    PlanSweep(SweepPlan),
+    /// Sweep the scene.
+    StartSweep(SweepPlan),
+    /// Stop the sweep.
+    StopSweep,
+    /// Copy the command that makes a sweep.
+    CopySweep(SweepPlan),
     /// Write a PNG of the view.
     Picture,
     /// Write a PNG of the whole window.

@@ -3,7 +3,8 @@
 use crate::action::Action;
 use crate::app_state::AppState;
 use crate::panels::{
-    branches, certificates, curves, custom_law, edge, film, formation, law, log, safety, sensing, world,
+    branches, certificates, curves, custom_law, edge, film, formation, law, log, safety, sensing, sweep,
+    world,
 };
 use crate::quantities::PlotQuantity;
 use eframe::egui::{ComboBox, Frame, Id, Panel, ScrollArea, Ui, WidgetText};
@@ -44,6 +45,7 @@ pub const PANES: &[(&str, Draw)] = &[
     ("Barriers", |ui, on| safety::plots(ui, on.app_state, on.out)),
     ("Law text", |ui, on| custom_law::text(ui, on.app_state, on.out)),
     ("Signals", |ui, on| curves::signals(ui, on.app_state, on.out)),
+    ("Sweep", |ui, on| sweep::show(ui, on.app_state, on.out)),
 ];
 
 impl Pane {
@@ -70,7 +72,7 @@ pub fn arrangement() -> Tree<Pane> {
     let (formation, edge) = (tabs(&["Formation"]), tabs(&["Edge", "Branches"]));
     let (law, more) = (
         tabs(&["Law", "Observer", "Limits", "Safety"]),
-        tabs(&["Sensing", "World", "Film", "Log", "Law text"]),
+        tabs(&["Sensing", "World", "Sweep", "Film", "Log", "Law text"]),
     );
     let plots = [
         tabs(&["Errors"]),

@@ -10,6 +10,7 @@ mod metrics;
 mod plan_tracking;
 mod safety;
 mod statistics;
+mod status;
 
 pub use certificates::{CertificateMetrics, StatementMetrics};
 pub use contacts::ContactMetrics;
@@ -23,3 +24,4 @@ pub use metrics::{
 pub use plan_tracking::PlanTrackingMetrics;
 pub use safety::SafetyMetrics;
 pub use statistics::{RootMeanSquare, median};
+pub use status::Status;

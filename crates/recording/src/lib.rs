@@ -23,7 +23,8 @@ mod table;
 
 pub use column::{Column, NamedColumn};
 pub use error::Error;
-pub use manifest::{Manifest, Status};
+pub use manifest::Manifest;
+pub use metrics::Status;
 pub use numbers::{edge_columns, edge_numbers, robot_columns, robot_numbers};
 pub use parquet_file::{ParquetWriter, append_bytes, append_columns, parquet_bytes, read_mark, read_whole};
 pub use run::{Finished, Recorder, RunOptions, metrics_text};

@@ -9,20 +9,20 @@
 //! Nothing here prints, draws or reads a clock: functions report how far they are to a callback, which says whether they go
 //! on, and pictures come from a [`CameraRenderer`](vocabulary::CameraRenderer) that the caller makes.
 //!
-//! On a page there are no files: there it is certificates and links alone.
+//! On a page there are no files: there it is certificates, links, and runs that are stepped piece by piece.
 
 #[cfg(not(target_family = "wasm"))]
 pub mod accuracy;
 #[cfg(not(target_family = "wasm"))]
 pub mod budget;
 pub mod certify;
-#[cfg(not(target_family = "wasm"))]
 pub mod copies;
 #[cfg(not(target_family = "wasm"))]
 pub mod dataset;
 #[cfg(not(target_family = "wasm"))]
 pub mod diff;
 mod error;
+mod judged_run;
 mod law_fault;
 #[cfg(not(target_family = "wasm"))]
 pub mod likeness;
@@ -36,17 +36,19 @@ mod record_source;
 pub mod replay;
 #[cfg(not(target_family = "wasm"))]
 pub mod run;
+mod run_under_way;
 mod scene_run;
 #[cfg(not(target_family = "wasm"))]
 pub mod tune;
-#[cfg(not(target_family = "wasm"))]
 pub mod verdict;
 
 pub use error::Error;
 pub use formation::closed_loop::{LoopEnd, Pole, SteadyLeaders, close};
+pub use judged_run::JudgedRun;
 pub use law_fault::law_fault_words;
 #[cfg(not(target_family = "wasm"))]
 pub use record_source::RecordSource;
+pub use run_under_way::RunUnderWay;
 #[cfg(not(target_family = "wasm"))]
 pub use scene_run::run_options;
 pub use scene_run::{COMMIT, PROGRAM, RendererFactory, STRIDE, SceneRun};

@@ -18,6 +18,44 @@ pub struct StudyFigure {
     pub svg: String,
 }
 
+/// What a map or a curve shows of the runs of each cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ChartQuantity {
+    /// The share that meets its expectations.
+    #[default]
+    Met,
+    /// One of the [`MEASURES`], by its place: the median.
+    Measure(usize),
+}
+
+/// A quantity over the one key that varies.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StudyCurve {
+    /// The key.
+    pub axis: MapAxis,
+    /// At each of its values the lower end, the middle and the upper end; NaN where there is none.
+    pub values: Vec<[f64; 3]>,
+}
+
+impl ChartQuantity {
+    /// What it is, with its unit.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Met => MET,
+            Self::Measure(which) => MEASURES.get(which).map_or("", |measure| measure.label),
+        }
+    }
+
+    /// Lower end, middle and upper end of a cell.
+    pub fn range(self, cell: &CellSummary) -> [f64; 3] {
+        match self {
+            Self::Met if cell.runs == 0 => [f64::NAN; 3],
+            Self::Met => [cell.interval[0], cell.share, cell.interval[1]],
+            Self::Measure(which) => cell.quantiles.get(which).copied().unwrap_or([f64::NAN; 3]),
+        }
+    }
+}
+
 /// What is drawn besides the share that met its expectations.
 const DRAWN: [&str; 3] = ["settling_time_s", "late_distance_error_m", "clearance_min_m"];
 const MET: &str = "share that meets its expectations";
@@ -126,11 +164,11 @@ fn number(text: &str) -> Option<f64> {
 }
 
 /// Cells summed over all other keys: what is left is a value for each place along some axes.
-fn shares(design: &Design, summary: &StudySummary, axes: &[usize]) -> Vec<CellSummary> {
+fn shares(design: &Design, cells: &[CellSummary], axes: &[usize]) -> Vec<CellSummary> {
     let lens: Vec<u64> = axes.iter().filter_map(|axis| Some(design.axes().get(*axis)?.len)).collect();
     let none = CellSummary { runs: 0, met: 0, with_contacts: 0, quantiles: vec![], ..empty() };
     let mut all = vec![none; lens.iter().product::<u64>() as usize];
-    for cell in &summary.cells {
+    for cell in cells {
         let places = design.places(cell.cell);
         let place = axes.iter().zip(&lens).fold(0, |place, (axis, len)| place * len + places[*axis]);
         let Some(sum) = all.get_mut(place as usize) else { continue };
@@ -168,7 +206,7 @@ fn curves(design: &Design, summary: &StudySummary, side: &ChartSide) -> StudyFig
             .and_then(|index| design.study().parameters.get(*index))
             .is_some_and(|p| p.key == side.key)
     });
-    let cells = shares(design, summary, &[which.unwrap_or(0)]);
+    let cells = shares(design, &summary.cells, &[which.unwrap_or(0)]);
     let points = |of: &dyn Fn(&CellSummary) -> f64| -> Vec<[f64; 2]> {
         side.axis.values.iter().zip(&cells).map(|(x, cell)| [*x, of(cell)]).collect()
     };
@@ -222,6 +260,59 @@ fn map(design: &Design, [across, up]: [&ChartSide; 2], cells: &[f64], label: &st
     }
 }
 
+/// The map of a quantity over the two keys that span the cells of a study, of the cells that have runs; `None` where other than
+/// two keys do.
+pub fn heat_map(design: &Design, cells: &[CellSummary], quantity: ChartQuantity) -> Option<HeatMap> {
+    let [across, up] = design.axes() else { return None };
+    let sides = [ChartSide::of(design, across)?, ChartSide::of(design, up)?];
+    Some(map_of(design, cells, [0, 1], [&sides[0], &sides[1]], quantity))
+}
+
+/// The curve of a quantity over the one key that spans the cells of a study: its axis, and for each value the lower end, the
+/// middle and the upper end; `None` where other than one key does. Of shares it is the 95 % interval, of numbers 5 %, 50 % and
+/// 95 % of the runs.
+pub fn curve(design: &Design, cells: &[CellSummary], quantity: ChartQuantity) -> Option<StudyCurve> {
+    let [axis] = design.axes() else { return None };
+    let side = ChartSide::of(design, axis)?;
+    Some(StudyCurve { axis: side.axis, values: ranges(design, cells, quantity) })
+}
+
+/// Lower end, middle and upper end of each cell of a study; NaN of those that have no runs.
+fn ranges(design: &Design, cells: &[CellSummary], quantity: ChartQuantity) -> Vec<[f64; 3]> {
+    let mut values = vec![[f64::NAN; 3]; design.study().cells() as usize];
+    for cell in cells {
+        if let Some(value) = values.get_mut(cell.cell as usize) {
+            *value = quantity.range(cell);
+        }
+    }
+    values
+}
+
+fn map_of(
+    design: &Design,
+    cells: &[CellSummary],
+    axes: [usize; 2],
+    sides: [&ChartSide; 2],
+    quantity: ChartQuantity,
+) -> HeatMap {
+    let values: Vec<f64> = if axes.len() == design.axes().len() {
+        ranges(design, cells, quantity).iter().map(|range| range[1]).collect()
+    } else {
+        shares(design, cells, &axes).iter().map(|cell| quantity.range(cell)[1]).collect()
+    };
+    let map = map(design, sides, &values, quantity.label());
+    let ChartQuantity::Measure(which) = quantity else {
+        return HeatMap { range: Some([0.0, 1.0]), ..map };
+    };
+    // A few runs that fly apart do not take the colours from all others.
+    let finite = || values.iter().copied().filter(|value| value.is_finite());
+    let ratio =
+        finite().fold(0.0_f64, f64::max) / finite().filter(|v| *v > 0.0).fold(f64::INFINITY, f64::min);
+    let scale = if ratio > 100.0 { Scale::Log } else { Scale::Linear };
+    let reversed = MEASURES.get(which).is_none_or(|measure| measure.column != "clearance_min_m");
+    HeatMap { scale, reversed, ..map }
+}
+
 fn map_of_share(
     design: &Design,
     summary: &StudySummary,
@@ -229,8 +320,8 @@ fn map_of_share(
     sides: [&ChartSide; 2],
     lines: &[MapLine],
 ) -> StudyFigure {
-    let cells: Vec<f64> = shares(design, summary, &axes).iter().map(|cell| cell.share).collect();
-    let map = HeatMap { range: Some([0.0, 1.0]), lines: lines.to_vec(), ..map(design, sides, &cells, MET) };
+    let map = map_of(design, &summary.cells, axes, sides, ChartQuantity::Met);
+    let map = HeatMap { lines: lines.to_vec(), ..map };
     let others = design.axes().len() - 2;
     let over = if others == 0 { String::new() } else { ", over all values of the other keys".to_owned() };
     let caption = format!("The {MET}, over {} and {}{over}.", sides[0].key, sides[1].key);
@@ -245,17 +336,10 @@ fn map_of_measure(
     which: usize,
 ) -> Option<StudyFigure> {
     let measure = MEASURES.get(which)?;
-    let median = |cell: &CellSummary| cell.quantiles.get(which).map_or(f64::NAN, |quantiles| quantiles[1]);
-    let cells: Vec<f64> = shares(design, summary, &axes).iter().map(median).collect();
-    if !cells.iter().any(|value| value.is_finite()) {
+    let map = map_of(design, &summary.cells, axes, sides, ChartQuantity::Measure(which));
+    if !map.cells.iter().any(|value| value.is_finite()) {
         return None;
     }
-    // A few runs that fly apart do not take the colours from all others.
-    let ratio = cells.iter().filter(|v| v.is_finite()).fold(0.0_f64, |a, b| a.max(*b))
-        / cells.iter().filter(|v| v.is_finite() && **v > 0.0).fold(f64::INFINITY, |a, b| a.min(*b));
-    let scale = if ratio > 100.0 { Scale::Log } else { Scale::Linear };
-    let reversed = measure.column != "clearance_min_m";
-    let map = HeatMap { scale, reversed, ..map(design, sides, &cells, measure.label) };
     let caption = format!(
         "Median of {}, over {} and {}; crosses: no run has it.",
         measure.label, sides[0].key, sides[1].key

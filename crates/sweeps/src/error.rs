@@ -15,12 +15,15 @@ pub enum Error {
     /// What is asked for does not fit what is there; the text says what does.
     #[error("{0}")]
     Usage(String),
+    #[cfg(not(target_family = "wasm"))]
     /// A file or folder could not be written or read.
     #[error(transparent)]
     Output(#[from] output::Error),
+    #[cfg(not(target_family = "wasm"))]
     /// Rows could not be written or read.
     #[error(transparent)]
     Recording(#[from] recording::Error),
+    #[cfg(not(target_family = "wasm"))]
     /// The manifest of a study is none.
     #[error("{path}: {message}")]
     Manifest {

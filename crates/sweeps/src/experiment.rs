@@ -2,14 +2,11 @@
 
 use crate::design::{Design, RunPoint};
 use crate::error::Error;
-use crate::row::{RowStatus, RunRow};
-use recording::Status;
+use crate::experiment_run::ExperimentRun;
+use crate::row::RunRow;
 use scene::{Diagnostics, Loaded, Override, Role, Scene, Study, StudyFault, Values, value_text};
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use studies::copies::{Episode, StartScatter};
-use studies::run::JudgedRun;
 use studies::{PROGRAM, SceneRun};
 use xxhash_rust::xxh3::Xxh3;
 
@@ -167,49 +164,40 @@ impl Experiment {
         loaded.map(|loaded| loaded.scene).map_err(|errors| first(&errors))
     }
 
-    /// Makes run `index`; `None` where `go_on` said no. `clock` tells seconds since any moment.
-    pub fn run(&self, index: u64, clock: &dyn Fn() -> f64, go_on: GoOn<'_>) -> Option<RunRow> {
-        let (point, began) = (self.design.point(index), clock());
-        let limit = self.study().limit.unwrap_or(f64::INFINITY);
-        let late = || clock() - began > limit;
-        let made = catch_unwind(AssertUnwindSafe(|| self.judged(&point, &|| go_on() && !late())));
-        let mut row = match made {
-            Ok(Made::Judged(judged)) if judged.status != Status::Interrupted => {
-                RunRow { point, ..row(&judged) }
-            }
-            Ok(Made::Judged(judged)) if late() => {
-                let reason = format!(
-                    "the run took longer than {limit} s, at {:.2} s of its time",
-                    judged.metrics.duration
-                );
-                let time = judged.metrics.duration;
-                RunRow { failed_time: time, ..RunRow::of(point, RowStatus::Expired, reason) }
-                    .measured(&judged)
-            }
-            Ok(Made::Judged(_)) => return None,
-            Ok(Made::Not(status, reason)) => RunRow::of(point, status, reason),
-            Err(payload) => RunRow::of(point, RowStatus::Panicked, message(payload.as_ref())),
-        };
-        row.wall_time = clock() - began;
-        Some(row)
+    /// Says why no run of it can be made, as far as that can be told before the first: what is wrong with the ends of what
+    /// varies, and with the scene of the first run.
+    ///
+    /// # Errors
+    /// [`Error::Study`] for values that the scene does not take, [`Error::Usage`] for a scene that cannot run, or with cameras.
+    pub fn check(&self) -> Result<(), Error> {
+        let faults = self.faults();
+        if !faults.is_empty() {
+            return Err(Error::Study(faults));
+        }
+        let told = |text: String| Error::Usage(format!("{}: {text}", self.path.display()));
+        let scene = self.scene(&self.design.point(0)).map_err(told)?;
+        let run = SceneRun::new(scene).map_err(|error| told(error.to_string()))?;
+        if run.simulation.needs_cameras() {
+            return Err(told(CAMERAS.to_owned()));
+        }
+        Ok(())
     }
 
-    fn judged(&self, point: &RunPoint, go_on: GoOn<'_>) -> Made {
-        let scene = match self.scene(point) {
-            Ok(scene) => scene,
-            Err(refusal) => return Made::Not(RowStatus::Refused, refusal),
-        };
-        let run = match SceneRun::new(scene) {
-            Ok(run) => run,
-            Err(error) => return Made::Not(RowStatus::Refused, error.to_string()),
-        };
-        if run.simulation.needs_cameras() {
-            return Made::Not(RowStatus::Refused, CAMERAS.to_owned());
-        }
-        match studies::run::run_unexamined(run, |_| go_on()) {
-            Ok(judged) => Made::Judged(Box::new(judged)),
-            Err(error) => Made::Not(RowStatus::Broken, error.to_string()),
-        }
+    /// Begins run `index`, which is then made piece by piece.
+    pub fn begin(&self, index: u64) -> ExperimentRun {
+        ExperimentRun::new(self, self.design.point(index))
+    }
+
+    /// Makes run `index`; `None` where `go_on` said no. `clock` tells seconds since any moment.
+    pub fn run(&self, index: u64, clock: &dyn Fn() -> f64, go_on: GoOn<'_>) -> Option<RunRow> {
+        let began = clock();
+        let limit = self.study().limit.unwrap_or(f64::INFINITY);
+        let late = || clock() - began > limit;
+        let mut run = self.begin(index);
+        run.advance(&|| go_on() && !late());
+        let mut row = run.row(late().then_some(limit))?;
+        row.wall_time = clock() - began;
+        Some(row)
     }
 }
 
@@ -218,50 +206,6 @@ const MOST_TRIED: usize = 1000;
 /// Why a scene with cameras is no scene of a study.
 pub const CAMERAS: &str = "its robots take pictures, which takes too long for many runs: calculated tags err alike (set \
     sensing.kind=geometric and sensing.pixel_noise=0.05)";
-
-/// What became of a run.
-enum Made {
-    Judged(Box<JudgedRun>),
-    Not(RowStatus, String),
-}
-
-/// What a row of a run that ended says, but for which run it is.
-fn row(judged: &JudgedRun) -> RunRow {
-    let status = if judged.status == Status::Complete { RowStatus::Complete } else { RowStatus::Stopped };
-    let mut row = RunRow::of(RunPoint::default(), status, String::new()).measured(judged);
-    row.digest.clone_from(&judged.digest);
-    let unmet = judged.findings.iter().filter(|finding| finding.failed());
-    let timed = unmet.map(|finding| (failed_at(finding.key, judged), finding));
-    let first = timed.min_by(|a, b| a.0.total_cmp(&b.0));
-    row.met = first.is_none();
-    if let Some((time, finding)) = first {
-        finding.key.clone_into(&mut row.failed);
-        row.failed_time = time;
-        row.reason = format!("wanted: {}; found: {}", finding.wanted, finding.found);
-    }
-    row
-}
-
-/// When it was clear that an expectation would not be met, s.
-fn failed_at(key: &str, judged: &JudgedRun) -> f64 {
-    let metrics = &judged.metrics;
-    let found = match key {
-        "no_contact" | "on_contact" | "contacts_exactly" | "contact_impulse_within" => {
-            metrics.first_contacts.first().map(|contact| contact.begin)
-        }
-        "clearance_min" => metrics.clearance_min_time,
-        "law" => metrics.law_faults.first().map(|fault| fault.time),
-        _ => None,
-    };
-    found.unwrap_or(metrics.duration)
-}
-
-/// What a panic says.
-fn message(payload: &(dyn Any + Send)) -> String {
-    let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
-    format!("a fault of the program: {}", text.unwrap_or_else(|| "it says nothing".to_owned()))
-}
 
 /// The first thing that is wrong, without the place in a text that nobody wrote.
 fn first(errors: &Diagnostics) -> String {
@@ -273,6 +217,7 @@ fn first(errors: &Diagnostics) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::row::RowStatus;
     use std::cell::Cell;
 
     fn experiment(limit: Option<f64>) -> Experiment {

@@ -11,7 +11,8 @@
 use crate::error::Error;
 use crate::experiment::Experiment;
 use crate::index_set::IndexSet;
-use crate::row::{RowTable, RunRow};
+use crate::row::RunRow;
+use crate::row_table::RowTable;
 use output::{Claim, write_whole};
 use recording::{ParquetWriter, append_bytes, append_columns, parquet_bytes, read_mark};
 use scene::Study;

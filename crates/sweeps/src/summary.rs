@@ -121,6 +121,17 @@ impl<'a> SummaryBuilder<'a> {
     }
 }
 
+impl CellSummary {
+    /// What the rows of a cell say, in any order; some may be missing.
+    pub fn of<'a>(cell: u64, rows: impl IntoIterator<Item = &'a RunRow>, design: &Design) -> Self {
+        let mut open = OpenCell::default();
+        for row in rows {
+            open.push(row);
+        }
+        open.close(cell, design)
+    }
+}
+
 impl OpenCell {
     fn push(&mut self, row: &RunRow) {
         self.runs += 1;

@@ -201,20 +201,13 @@ fn refusal(subject: &Path, faults: &[StudyFault]) -> Failure {
 
 /// The experiment of a study that can run.
 fn experiment_of(study: Study, subject: &Path) -> Result<Experiment, Failure> {
-    let experiment = Experiment::new(study).map_err(|error| match error {
+    let told = |error: sweeps::Error| match error {
         sweeps::Error::Study(faults) => refusal(subject, &faults),
         other => other.into(),
-    })?;
-    let faults = experiment.faults();
-    if !faults.is_empty() {
-        return Err(refusal(subject, &faults));
-    }
+    };
+    let experiment = Experiment::new(study).map_err(told)?;
     // What no run could be, all are told at once.
-    let scene = experiment.scene(&experiment.design().point(0)).map_err(Failure::Usage)?;
-    let run = crate::load::build(scene, &subject.display())?;
-    if run.simulation.needs_cameras() {
-        return Err(Failure::Usage(format!("{}: {}", subject.display(), sweeps::CAMERAS)));
-    }
+    experiment.check().map_err(told)?;
     Ok(experiment)
 }
 

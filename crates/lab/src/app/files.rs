@@ -3,6 +3,8 @@
 use super::LabApp;
 use super::capture::words_of;
 use super::dialogs::Dialog;
+use crate::app_state::sweep_plan::SweepPlan;
+use crate::app_state::sweeping::SweepCommand;
 use crate::autosave::discard;
 #[cfg(not(target_family = "wasm"))]
 use crate::kept_run::keep;
@@ -129,6 +131,14 @@ impl LabApp {
             }
             Err(why) => self.app_state.fault(why),
         }
+    }
+
+    /// Copies the command that makes a sweep of the scene.
+    pub(crate) fn copy_sweep(&mut self, plan: &SweepPlan) {
+        let Some(SweepCommand { text, same }) = self.app_state.sweep_command(plan) else { return };
+        self.ctx.copy_text(text.clone());
+        let but = if same { "" } else { ". Save the scene first (Ctrl S): no file has all of it" };
+        self.app_state.say(format!("Copied: {text}{but}"), false);
     }
 
     /// Writes a scene that repeats the shown branch.

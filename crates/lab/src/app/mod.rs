@@ -23,6 +23,7 @@ use crate::session::prediction::{Prediction, Predictor};
 use crate::session::run_event::SeenRun;
 use crate::session::runner::{RunEvent, RunRequest, Runner};
 use crate::session::scene_draft::SceneDraft;
+use crate::session::sweeper::Sweeper;
 use crate::theme;
 use crate::view::viewport::Viewport;
 use eframe::egui::{self, Context, Ui};
@@ -41,6 +42,7 @@ pub(crate) struct LabApp {
     pub(crate) predictions: Receiver<Prediction>,
     pub(crate) viewport: Viewport,
     pub(crate) exporter: Exporter,
+    pub(crate) sweeper: Sweeper,
     pub(crate) tree: Tree<Pane>,
     pub(crate) gallery: Gallery,
     pub(crate) dialog: Dialog,
@@ -109,6 +111,7 @@ impl LabApp {
             runner: Runner::start(predictor, eyes, wake()),
             predictions,
             exporter: Exporter::start(viewport.gpu.clone(), wake()),
+            sweeper: Sweeper::new(wake()),
             viewport,
             tree: memory.tree.filter(panes::sound).unwrap_or_else(panes::arrangement),
             gallery: Gallery::default(),
@@ -183,6 +186,9 @@ impl LabApp {
                 self.app_state.prediction = Some(prediction);
             }
         }
+        while let Some(event) = self.sweeper.next_event() {
+            self.app_state.handle_sweep_event(event);
+        }
         while let Some(told) = self.exporter.next_event() {
             match told {
                 ExportEvent::Written(path) => self.app_state.note(format!("Written: {}", path.display())),
@@ -210,11 +216,14 @@ impl LabApp {
         for request in self.app_state.requests.drain(..) {
             self.runner.request(request);
         }
+        for request in self.app_state.sweep.requests.drain(..) {
+            self.sweeper.request(&request);
+        }
     }
 
     /// Gives the work beside the window its share of the frame, where it has no threads.
     fn tick(&mut self) {
-        let next = self.runner.tick(SHARE).min(self.exporter.tick(SHARE));
+        let next = self.runner.tick(SHARE).min(self.exporter.tick(SHARE)).min(self.sweeper.tick(SWEEP_SHARE));
         if let Next::After(time) = next {
             self.ctx.request_repaint_after(time);
         }
@@ -330,6 +339,7 @@ impl LabApp {
             Action::Reload => self.reload(),
             Action::Recover => self.recover(),
             Action::Forget => self.forget(),
+            Action::CopySweep(plan) => self.copy_sweep(&plan),
             Action::SaveBranch => self.save_branch(),
             Action::CloseStatus => self.app_state.status = None,
             Action::Picture => self.picture(),
@@ -420,6 +430,9 @@ fn pasted(ctx: &Context) -> Vec<String> {
     };
     ctx.input(|input| input.events.iter().filter_map(pasted).collect())
 }
+
+/// Computing time of sweeps in a frame, where there are no threads: the run that is shown comes first.
+const SWEEP_SHARE: Duration = Duration::from_millis(5);
 
 /// The window is cleared in the colour of panels. On a CPU, painting it again would cost as much as the robots.
 pub(crate) const BARE: egui::Frame =

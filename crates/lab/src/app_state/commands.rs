@@ -91,6 +91,9 @@ impl AppState {
             }
             Action::Restart => self.restart(0.0),
             Action::Share => self.share(),
+            Action::PlanSweep(plan) => self.sweep.plan = Some(plan.clone()),
+            Action::StartSweep(plan) => self.start_sweep(plan),
+            Action::StopSweep => self.stop_sweep(),
             Action::Release => self.rest(),
             _ => return self.edit_scene(action),
         }

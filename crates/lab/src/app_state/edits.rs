@@ -133,7 +133,7 @@ impl AppState {
     }
 
     /// The sample after the shown time, and the scene's text there.
-    fn there(&self) -> Option<(u64, String)> {
+    pub(super) fn there(&self) -> Option<(u64, String)> {
         let sample = self.history.as_ref()?.sample(self.time()) + 1;
         Some((sample, self.branches.get(self.branch)?.text_at(sample, &self.base)))
     }

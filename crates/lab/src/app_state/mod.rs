@@ -7,6 +7,9 @@ mod law_edit;
 mod linked;
 mod past_changes;
 mod recorded;
+pub mod sweep_plan;
+pub mod sweep_state;
+pub mod sweeping;
 
 use crate::session::branches::BranchChange;
 use crate::session::history::History;
@@ -21,6 +24,7 @@ use scene::{Follow, Leader, Link, Scene};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use sweep_state::SweepState;
 use vocabulary::{EdgeState, EventKind, EventRecord, FleetInfo, ScalarTrajectory, StepRecord, math, wrap};
 
 /// What is selected.
@@ -118,6 +122,8 @@ pub struct AppState {
     pub(crate) own: Vec<scene::Change>,
     /// The text of a custom law that is being edited.
     pub(crate) law_edit: Option<LawEdit>,
+    /// The sweep of the scene.
+    pub sweep: SweepState,
     /// Requests to the thread of the run.
     pub requests: Vec<RunRequest>,
 }
@@ -153,6 +159,7 @@ impl AppState {
             chosen: None,
             own: Vec::new(),
             law_edit: None,
+            sweep: SweepState::default(),
             requests: Vec::new(),
         }
     }
@@ -162,7 +169,11 @@ impl AppState {
     /// # Errors
     /// All that is wrong with the text; then the state is as before.
     pub fn open(&mut self, text: String, path: Option<PathBuf>, home: &Path) -> Result<(), String> {
-        self.draft = Some(SceneDraft::new(text, path, home)?);
+        let draft = SceneDraft::new(text, path, home)?;
+        if self.draft.as_ref().is_none_or(|before| before.home() != draft.home()) {
+            self.forget_sweep();
+        }
+        self.draft = Some(draft);
         self.selection = Selection::Nothing;
         self.restart(0.0);
         Ok(())

@@ -15,17 +15,19 @@ const LAWS: [(LawKind, &str, &str); 3] = [
     (LawKind::OutputFeedback, "Output feedback", "Knows ℓ and ψ only (eq 42)."),
 ];
 
-const GAIN: SliderRow = SliderRow::new(symbols::GAIN, "law.k", Range::factors(0.1, 20.0), 3);
-const ROBUST: SliderRow = SliderRow::new(symbols::ROBUST, "law.beta", Range::linear(0.0, 20.0), 3);
-const SLOPE: SliderRow = SliderRow::new(symbols::SLOPE, "law.slope", Range::factors(1.0, 200.0), 2);
-const HEADING_LENGTH: SliderRow =
+pub(crate) const GAIN: SliderRow = SliderRow::new(symbols::GAIN, "law.k", Range::factors(0.1, 20.0), 3);
+pub(crate) const ROBUST: SliderRow = SliderRow::new(symbols::ROBUST, "law.beta", Range::linear(0.0, 20.0), 3);
+pub(crate) const SLOPE: SliderRow =
+    SliderRow::new(symbols::SLOPE, "law.slope", Range::factors(1.0, 200.0), 2);
+pub(crate) const HEADING_LENGTH: SliderRow =
     SliderRow::new(symbols::HEADING_LENGTH, "law.heading_length", Range::factors(0.1, 10.0), 2);
-const HEADING_LAG: SliderRow =
+pub(crate) const HEADING_LAG: SliderRow =
     SliderRow::new(symbols::HEADING_LAG, "law.heading_lag", Range::linear(0.0, 4.0), 2);
-const EPSILON: SliderRow = SliderRow::new(symbols::EPSILON, "observer.epsilon", Range::factors(1e-4, 1.0), 5);
-const ALPHA_ONE: SliderRow =
+pub(crate) const EPSILON: SliderRow =
+    SliderRow::new(symbols::EPSILON, "observer.epsilon", Range::factors(1e-4, 1.0), 5);
+pub(crate) const ALPHA_ONE: SliderRow =
     SliderRow::new(symbols::ALPHA_ONE, "observer.alpha1", Range::factors(0.1, 10.0), 3);
-const ALPHA_TWO: SliderRow =
+pub(crate) const ALPHA_TWO: SliderRow =
     SliderRow::new(symbols::ALPHA_TWO, "observer.alpha2", Range::factors(0.1, 10.0), 3);
 const HEADINGS: [(HeadingReference, &str, &str); 2] = [
     (

@@ -13,6 +13,7 @@ pub mod law;
 pub mod log;
 pub mod safety;
 pub mod sensing;
+pub mod sweep;
 pub mod time_bar;
 pub mod world;
 

@@ -12,16 +12,17 @@ use eframe::egui::{self, DragValue, RichText, Ui};
 use scene::{Robot, Role};
 use vocabulary::{BarrierState, FleetInfo, SafetyState};
 
-const MARGIN: SliderRow =
+pub(crate) const MARGIN: SliderRow =
     SliderRow::new(symbols::BARRIER_MARGIN, "safety.margin", Range::linear(0.0, 1.0), 3);
-const POINT_AHEAD: SliderRow =
+pub(crate) const POINT_AHEAD: SliderRow =
     SliderRow::new(symbols::POINT_AHEAD, "safety.point_ahead", Range::factors(0.02, 2.0), 3);
-const GAIN: SliderRow = SliderRow::new(symbols::BARRIER_GAIN, "safety.gain", Range::factors(0.1, 20.0), 2);
-const HORIZON: SliderRow =
+pub(crate) const GAIN: SliderRow =
+    SliderRow::new(symbols::BARRIER_GAIN, "safety.gain", Range::factors(0.1, 20.0), 2);
+pub(crate) const HORIZON: SliderRow =
     SliderRow::new(symbols::BARRIER_HORIZON, "safety.horizon", Range::factors(0.01, 1.0), 3);
-const VIEW_DISTANCE: SliderRow =
+pub(crate) const VIEW_DISTANCE: SliderRow =
     SliderRow::new(symbols::VIEW_DISTANCE, "safety.view_distance", Range::linear(0.5, 10.0), 2);
-const VIEW_ANGLE: SliderRow =
+pub(crate) const VIEW_ANGLE: SliderRow =
     SliderRow::new(symbols::VIEW_ANGLE, "safety.view_angle", Range::linear(1.0, 90.0), 1);
 /// What a robot is given that senses nothing, m.
 const SENSES: f64 = 4.0;

@@ -17,12 +17,15 @@ const KINDS: [(SensingKind, &str, &str); 4] = [
     (SensingKind::Camera, "Camera", "Detects tags in rendered images of each follower's camera."),
 ];
 
-const RATE: SliderRow = SliderRow::new(symbols::RATE, "sensing.rate", Range::factors(1.0, 100.0), 1);
-const LATENCY: SliderRow = SliderRow::new(symbols::LATENCY, "sensing.latency", Range::linear(0.0, 0.3), 3);
-const DROPS: SliderRow = SliderRow::new(symbols::DROPS, "sensing.drop", Range::linear(0.0, 0.9), 2);
-const DISTANCE_NOISE: SliderRow =
+pub(crate) const RATE: SliderRow =
+    SliderRow::new(symbols::RATE, "sensing.rate", Range::factors(1.0, 100.0), 1);
+pub(crate) const LATENCY: SliderRow =
+    SliderRow::new(symbols::LATENCY, "sensing.latency", Range::linear(0.0, 0.3), 3);
+pub(crate) const DROPS: SliderRow =
+    SliderRow::new(symbols::DROPS, "sensing.drop", Range::linear(0.0, 0.9), 2);
+pub(crate) const DISTANCE_NOISE: SliderRow =
     SliderRow::new(symbols::DISTANCE_NOISE, "sensing.distance_noise", Range::linear(0.0, 0.1), 4);
-const PIXEL_NOISE: SliderRow =
+pub(crate) const PIXEL_NOISE: SliderRow =
     SliderRow::new(symbols::PIXEL_NOISE, "sensing.pixel_noise", Range::linear(0.0, 2.0), 3);
 
 /// Sensing of the selected follower.

@@ -11,17 +11,17 @@ use eframe::egui::{self, Slider, Ui, WidgetInfo};
 use scene::Vehicle;
 use vocabulary::counted;
 
-const SPEED_MIN: SliderRow = SliderRow::new(
+pub(crate) const SPEED_MIN: SliderRow = SliderRow::new(
     symbols::SPEED_MIN,
     "vehicle.speed_min",
     Range { span: [0.01, 1.0], hard: [0.001, 100.0], logarithmic: true },
     3,
 );
-const SPEED_MAX: SliderRow =
+pub(crate) const SPEED_MAX: SliderRow =
     SliderRow::new(symbols::SPEED_MAX, "vehicle.speed_max", Range::factors(0.5, 20.0), 2);
-const TURN_MAX: SliderRow =
+pub(crate) const TURN_MAX: SliderRow =
     SliderRow::new(symbols::TURN_MAX, "vehicle.turn_rate_max", Range::factors(0.2, 20.0), 2);
-const ACCELERATION_MAX: SliderRow =
+pub(crate) const ACCELERATION_MAX: SliderRow =
     SliderRow::new(symbols::ACCELERATION_MAX, "vehicle.acceleration_max", Range::factors(0.2, 50.0), 2);
 
 /// Limits of the selected follower.

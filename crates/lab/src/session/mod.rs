@@ -8,3 +8,5 @@ pub mod run_event;
 pub mod run_request;
 pub mod runner;
 pub mod scene_draft;
+pub mod sweep_job;
+pub mod sweeper;

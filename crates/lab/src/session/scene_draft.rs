@@ -95,6 +95,11 @@ impl SceneDraft {
         self.text != self.saved
     }
 
+    /// The text that was saved last; empty where it stands in no file.
+    pub fn saved_text(&self) -> &str {
+        &self.saved
+    }
+
     /// Marks the text as unsaved: it stands in no file.
     pub fn never_saved(&mut self) {
         self.saved.clear();

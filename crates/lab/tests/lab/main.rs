@@ -16,3 +16,4 @@ mod prediction;
 mod recorded;
 mod scene_draft;
 mod staying;
+mod sweeps;

@@ -5,6 +5,7 @@ mod laws;
 mod places;
 mod safety;
 mod seeing;
+mod sweep;
 mod time;
 
 use eframe::egui::{self, Event, Ui, accesskit::Role};
