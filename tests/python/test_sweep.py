@@ -134,6 +134,12 @@ def test_a_folder_holds_the_parts_that_were_made(study, tmp_path):
     assert sorted(os.listdir(out)) == files
 
 
+def test_a_folder_for_parts_needs_fsspec(study, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "fsspec", None)
+    with pytest.raises(ImportError, match=r"echelon\[dask\]"):
+        echelon.sweep(study, out=str(tmp_path / "parts"))
+
+
 def test_a_bucket_holds_the_parts_that_were_made(study, bucket, monkeypatch):
     whole = echelon.sweep(study, out="s3://studies/first", chunk=7)
     same(whole, study.run())
