@@ -138,16 +138,26 @@ def keys():
     return {f"robots.follower-{one + 1}.pose.{axis}": STARTS[one, axis] for one in range(2) for axis in range(2)}
 
 
+def timed(work):
+    """What some work returns; the time it took, and the time of all processors that it took, s."""
+    begun, before = time.perf_counter(), os.times()
+    found = work()
+    taken, after = time.perf_counter() - begun, os.times()
+    return found, (taken, sum(after[:4]) - sum(before[:4]))
+
+
 def sweep(program, runs, folder):
-    """Makes the study with the program; how long that took, s."""
+    """Makes the study with the program."""
     vary = [f"--vary={key}=uniform:{middle - SPREAD}..{middle + SPREAD}" for key, middle in keys().items()]
     command = [program, "sweep", SCENE, *vary, "--samples", str(runs), "--quiet", "--force", "-o", folder]
-    begun = time.perf_counter()
     done = subprocess.run(command, capture_output=True, text=True, check=False)
-    taken = time.perf_counter() - begun
     if done.returncode != 0:
         sys.exit(f"{' '.join(command)}\n{done.stderr.strip()}")
-    return taken
+
+
+def spread(values, digits):
+    """The median of some numbers, with their range."""
+    return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"
 
 
 def main():
@@ -171,15 +181,13 @@ def main():
         if not (off <= TOLERANCE).all():
             sys.exit(f"that is more than {TOLERANCE:g}: it is not the same study")
         for _ in range(given.pairs):
-            ours.append(sweep(given.program, given.runs, folder))
-            begun = time.perf_counter()
-            study(starts, WANTED, given.substeps)
-            theirs.append(time.perf_counter() - begun)
-    ratios = [b / a for a, b in zip(ours, theirs, strict=True)]
+            ours.append(timed(lambda: sweep(given.program, given.runs, folder))[1])
+            theirs.append(timed(lambda: study(starts, WANTED, given.substeps))[1])
     print(f"{os.cpu_count()} processors, {given.pairs} pairs, {given.substeps} steps of Runge-Kutta to a period; medians (ranges)")
-    for name, seconds in (("echelon sweep", ours), ("Numba", theirs)):
-        print(f"{name}: {statistics.median(seconds):.1f} s ({min(seconds):.1f} to {max(seconds):.1f})")
-    print(f"Numba takes {statistics.median(ratios):.2f} times as long ({min(ratios):.2f} to {max(ratios):.2f})")
+    for which, what in enumerate(("s", "s of processors")):
+        a, b = ([both[which] for both in side] for side in (ours, theirs))
+        ratios = [their / our for our, their in zip(a, b, strict=True)]
+        print(f"echelon sweep {spread(a, 1)} {what}, Numba {spread(b, 1)} {what}: {spread(ratios, 2)} times as much")
 
 
 main()
