@@ -23,11 +23,19 @@ def _part(study: Study, start: int, stop: int, place: str | None, threads: int) 
     return None
 
 
-def _write(place: str, part: bytes) -> None:
-    import fsspec  # type: ignore[import-untyped]
-
-    # Whoever reads sees all of a file or none: a file system writes its name last, or an object as a whole.
+def _found(place: str) -> tuple[Any, str]:
+    """The file system of a place, and its path there."""
+    try:
+        import fsspec  # type: ignore[import-untyped]
+    except ImportError as error:
+        raise ImportError('sweep(…, out=…) needs fsspec: pip install "echelon[dask]"') from error
     files, path = fsspec.core.url_to_fs(place)
+    return files, path
+
+
+def _write(place: str, part: bytes) -> None:
+    # Whoever reads sees all of a file or none: a file system writes its name last, or an object as a whole.
+    files, path = _found(place)
     files.makedirs(files._parent(path), exist_ok=True)
     draft = f"{path}.{uuid.uuid4().hex}"
     with files.open(draft, "wb") as file:
@@ -36,9 +44,7 @@ def _write(place: str, part: bytes) -> None:
 
 
 def _read(place: str) -> bytes | None:
-    import fsspec  # type: ignore[import-untyped]
-
-    files, path = fsspec.core.url_to_fs(place)
+    files, path = _found(place)
     if not files.exists(path):
         return None
     with files.open(path, "rb") as file:
@@ -63,11 +69,11 @@ def sweep(
     study : Study
         What is run.
     client : dask.distributed.Client, optional
-        The cluster; without one, all cores of this machine make the runs. Workers need this package, of the same version.
+        The cluster; without one, all cores of this machine make the runs. Workers need ``echelon[dask]``, of the same version.
         Parts of workers that die are made again by others.
     out : str, optional
-        Folder for the parts, as a path or an address that fsspec knows, such as ``s3://bucket/study``; it needs fsspec.
-        Parts that are there are not made again.
+        Folder for the parts, as a path or an address that fsspec knows, such as ``s3://bucket/study``; it needs the
+        extra ``echelon[dask]``. Parts that are there are not made again.
     chunk : int, optional
         Runs of a part; by default so many that each thread of the cluster makes about eight.
     threads : int, optional
