@@ -26,6 +26,8 @@ mod row_table;
 mod runner;
 mod sampling;
 mod summary;
+#[cfg(not(target_family = "wasm"))]
+mod theory;
 
 pub use boundary::BoundarySearch;
 pub use chart::{ChartQuantity, StudyCurve, StudyFigure, charts, curve, edge_line, heat_map};
@@ -46,3 +48,5 @@ pub use row_table::RowTable;
 #[cfg(not(target_family = "wasm"))]
 pub use runner::{Progressed, THREAD, run_all};
 pub use summary::{CellSummary, StudySummary, SummaryBuilder};
+#[cfg(not(target_family = "wasm"))]
+pub use theory::{TheoryCell, TheoryClaim, agreement, theory, theory_lines};

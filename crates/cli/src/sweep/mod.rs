@@ -4,6 +4,7 @@ mod boundary;
 mod folder;
 mod joined;
 mod tell;
+mod theory;
 
 use crate::args::AdapterArgs;
 use crate::failure::Failure;
@@ -72,6 +73,10 @@ struct StudyArgs {
     /// their expectations; over one or two varied keys
     #[arg(long, value_name = "ANSWER", value_parser = ["met"], conflicts_with_all = ["shard", "range"])]
     boundary: Option<String>,
+    /// Hold the map over two keys against theory: draw where the sampled loop is stable, where β is as large as Lemma 4.1 wants it
+    /// and ε as small as Theorem 4.3 does, print in how many cells runs say otherwise, and write theory.csv
+    #[arg(long, conflicts_with_all = ["shard", "range"])]
+    theory: bool,
     /// Make one of N parts of the study, such as 3/16
     #[arg(long, value_name = "I/N", value_parser = shard, conflicts_with = "range")]
     shard: Option<[u64; 2]>,
@@ -230,6 +235,9 @@ fn run(args: &StudyArgs) -> Outcome {
     if args.boundary.is_some() {
         boundary::of(&experiment)?;
     }
+    if args.theory {
+        theory::check(&experiment)?;
+    }
     if args.dry_run {
         tell::dry(&experiment, &range, &args.shown);
         return Ok(());
@@ -277,11 +285,16 @@ fn run(args: &StudyArgs) -> Outcome {
     flushed?;
     study.finish()?;
     drop(study);
-    let lines: Vec<figures::MapLine> = edge.iter().filter_map(|edge| edge.line.clone()).collect();
+    let mut lines: Vec<figures::MapLine> = edge.iter().filter_map(|edge| edge.line.clone()).collect();
+    let said = if args.theory { Some(theory::ask(&experiment, args)?) } else { None };
+    lines.extend(said.iter().flat_map(|said| sweeps::theory_lines(experiment.design(), said)));
     let summary = folder::complete(&folder, &experiment, &args.shown, range == (0..runs), &lines)?;
     tell::study(&experiment, &summary, &folder, &effort, &args.shown);
     if let Some(edge) = edge.filter(|_| !args.shown.quiet && !args.shown.json) {
         edge.tell(&experiment);
+    }
+    if let Some(said) = said {
+        theory::keep(&folder, &experiment, &said, &summary, &args.shown)?;
     }
     judge(&summary, args.met_at_least)
 }

@@ -4,7 +4,7 @@ use super::chain::{self, EdgeGain};
 use super::reach::{self, Reach};
 use super::sensitivity::{self, Sensitivities};
 use super::{ChannelSensitivity, Discretisation, LongestPeriod};
-use scene::{Scene, SensingKind, SwitchingKind};
+use scene::{Follow, Scene, SensingKind, SwitchingKind};
 use simulation::BuildError;
 use vocabulary::{LawKind, math};
 
@@ -82,19 +82,30 @@ impl SensitivityCost {
     }
 }
 
-fn chart(scene: &Scene) -> Option<StabilityChart> {
-    let (name, follow) =
-        scene.followers().find(|(_, follow)| follow.law.built_in() == Some(LawKind::OutputFeedback))?;
-    let (k, observer) = (follow.law.k[0], &follow.observer);
+/// The channels of a follower by output feedback, distance and bearing, near its set point; `None` of another law.
+pub fn channels(follow: &Follow) -> Option<[ChannelSensitivity; 2]> {
+    if follow.law.built_in() != Some(LawKind::OutputFeedback) {
+        return None;
+    }
+    let (law, observer) = (&follow.law, &follow.observer);
     // The slope of the sign is not a number; near its set point only K acts then.
-    let smooth = follow.law.switching == SwitchingKind::Tanh;
-    let steep = if smooth { follow.law.beta[0] * follow.law.slope[0] } else { 0.0 };
-    let channel = ChannelSensitivity {
-        gain: k,
-        stiffness: k * k + steep,
-        alpha1: observer.alpha1[0],
-        alpha2: observer.alpha2[0],
-    };
+    let smooth = law.switching == SwitchingKind::Tanh;
+    Some([0, 1].map(|channel| {
+        let k = law.k[channel];
+        let steep = if smooth { law.beta[channel] * law.slope[channel] } else { 0.0 };
+        ChannelSensitivity {
+            gain: k,
+            stiffness: k * k + steep,
+            alpha1: observer.alpha1[channel],
+            alpha2: observer.alpha2[channel],
+        }
+    }))
+}
+
+fn chart(scene: &Scene) -> Option<StabilityChart> {
+    let (name, follow, [channel, _]) =
+        scene.followers().find_map(|(name, follow)| Some((name, follow, channels(follow)?)))?;
+    let observer = &follow.observer;
     let epsilons: Vec<f64> = (0..=48).map(|i| 1e-4 * math::powf(10_f64, f64::from(i) / 12.0)).collect();
     let border = |how: Discretisation| {
         let at = |epsilon: &f64| channel.longest_period(how, *epsilon, PERIODS);
