@@ -259,7 +259,8 @@ impl HeatMap {
             };
             let place = |[x, y]: &[f64; 2]| {
                 let (x, y) = (across.ruler.at(*x)?, up.ruler.at(*y)?);
-                let inside = (0.0..=1.0).contains(&x) && (0.0..=1.0).contains(&y);
+                // The frame itself is inside, rounding or not.
+                let inside = [x, y].iter().all(|at| (-1e-9..=1.0 + 1e-9).contains(at));
                 inside.then_some([left + x * wide, top + (1.0 - y) * high])
             };
             let places: Vec<Option<[f64; 2]>> = line.points.iter().map(place).collect();

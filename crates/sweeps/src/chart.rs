@@ -135,9 +135,15 @@ pub fn edge_line(design: &Design, pairs: &[[u64; 2]]) -> Option<MapLine> {
         let values = &side.axis.values;
         let last = values.len() as i64 - 1;
         let at = |k: i64| values[k.clamp(0, last) as usize];
-        let (here, there) = (at(place), at(place + by));
-        let there = if (0..=last).contains(&(place + by)) { there } else { here };
-        if side.axis.scale == Scale::Log { (here * there).sqrt() } else { f64::midpoint(here, there) }
+        let logarithmic = side.axis.scale == Scale::Log;
+        let (here, beyond) = (at(place), at(place - by));
+        // At its ends a map goes on by half a step.
+        let there = match (0..=last).contains(&(place + by)) {
+            true => at(place + by),
+            false if logarithmic => here * here / beyond,
+            false => 2.0 * here - beyond,
+        };
+        if logarithmic { (here * there).sqrt() } else { f64::midpoint(here, there) }
     };
     let mut points = vec![];
     for [a, b] in pairs {

@@ -4,7 +4,7 @@
 const DEVIATIONS: f64 = 1.959_963_984_540_054;
 
 /// The 95 % interval of a share of which `met` of `runs` were seen (Wilson, 1927).
-pub fn wilson(met: u64, runs: u64) -> [f64; 2] {
+pub(crate) fn wilson(met: u64, runs: u64) -> [f64; 2] {
     if runs == 0 {
         return [0.0, 1.0];
     }

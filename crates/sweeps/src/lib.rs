@@ -40,7 +40,6 @@ pub use folder::{
     StudyFolder, StudyManifest, for_every_row, joined, merge, part_bytes, row_files, write_rows,
 };
 pub use index_set::IndexSet;
-pub use interval::wilson;
 pub use measure::{MEASURES, RunMeasure};
 pub use row::{RowStatus, RunRow};
 #[cfg(not(target_family = "wasm"))]

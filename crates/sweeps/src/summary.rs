@@ -38,8 +38,12 @@ pub struct StudySummary {
     pub runs: u64,
     /// Runs that met everything their scene expects.
     pub met: u64,
+    /// Ends of the 95 % interval of their share (Wilson).
+    pub met_interval: [f64; 2],
     /// Runs with contacts.
     pub with_contacts: u64,
+    /// Ends of the 95 % interval of the share without (Wilson).
+    pub contact_free_interval: [f64; 2],
     /// Runs by how they ended.
     pub by_status: BTreeMap<&'static str, u64>,
     /// Runs by the expectation that they did not meet first.
@@ -77,7 +81,9 @@ impl<'a> SummaryBuilder<'a> {
             cells: vec![],
             runs: 0,
             met: 0,
+            met_interval: [0.0, 1.0],
             with_contacts: 0,
+            contact_free_interval: [0.0, 1.0],
             by_status: BTreeMap::new(),
             by_failure: BTreeMap::new(),
             wall_time: 0.0,
@@ -116,8 +122,11 @@ impl<'a> SummaryBuilder<'a> {
         for (number, cell) in std::mem::take(&mut self.open) {
             self.summary.cells.push(cell.close(number, self.design));
         }
-        self.summary.cells.sort_by_key(|cell| cell.cell);
-        self.summary
+        let mut summary = self.summary;
+        summary.cells.sort_by_key(|cell| cell.cell);
+        summary.met_interval = wilson(summary.met, summary.runs);
+        summary.contact_free_interval = wilson(summary.runs - summary.with_contacts, summary.runs);
+        summary
     }
 }
 

@@ -8,7 +8,7 @@ use serde_json::json;
 use std::fmt::Write;
 use std::ops::Range;
 use std::path::Path;
-use sweeps::{CellSummary, Experiment, MEASURES, RunRow, StudySummary, wilson};
+use sweeps::{CellSummary, Experiment, MEASURES, RunRow, StudySummary};
 use vocabulary::{Word, counted};
 
 /// Runs that a trial without runs shows.
@@ -65,8 +65,8 @@ pub(super) fn dry(experiment: &Experiment, range: &Range<u64>, args: &ShownArgs)
 }
 
 /// A share with its interval.
-fn share(met: u64, runs: u64) -> String {
-    let [low, high] = wilson(met, runs).map(|end| 100.0 * end);
+fn share(met: u64, runs: u64, interval: [f64; 2]) -> String {
+    let [low, high] = interval.map(|end| 100.0 * end);
     let percent = 100.0 * met as f64 / runs.max(1) as f64;
     format!("{percent:.2} % ({low:.2} to {high:.2} %)")
 }
@@ -78,8 +78,8 @@ pub(super) fn lead(experiment: &Experiment, summary: &StudySummary) -> String {
         "{} of {} meet what their scene expects: {}; {} without contact.",
         summary.met,
         counted(summary.runs, "run"),
-        share(summary.met, summary.runs),
-        share(summary.runs - summary.with_contacts, summary.runs)
+        share(summary.met, summary.runs, summary.met_interval),
+        share(summary.runs - summary.with_contacts, summary.runs, summary.contact_free_interval)
     );
     let odd = summary.by_status.iter().filter(|(word, _)| **word != "complete");
     for (word, count) in odd {
