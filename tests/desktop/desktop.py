@@ -640,7 +640,13 @@ class Test:
 
         lab.screen.drag(path, until)
         lab.screen.move(*AWAY)
-        after = lab.still()
+
+        def leads_there():
+            look = lab.still()
+            return look if look.differs(before, old) > 0.08 else None
+
+        # The prediction tells where the new way leads.
+        after = wait("the new way", leads_there, 30)
         self.see("goal-after-the-drag")
         goal = lambda text: tomllib.loads(text)["groups"][0]["path"]["pose"]
         now = goal(wait("unsaved work", self.kept, 10))
