@@ -20,6 +20,7 @@ const HINTS_CLOSED = [677, 218];
 const GAIN = [[1110, 139], [1070, 139]];
 const TIMELINE = { y: 18, left: 368, right: 1060 };
 const RESTORE = [485, 55];
+const SWEEP = { tab: [1140, 324], start: [1030, 515], panel: { x: 962, y: 340, width: 316, height: 258 } };
 /** Where the selected set point of circle-three stands at the start, in the view of the scene. */
 const SET_POINT = [790, 375];
 /** Least likeness of a picture of the view and the program's, which lacks the prediction. A tenth of a second later it is 0.3. */
@@ -77,8 +78,8 @@ class Tab {
     return { title, time: Number(time), plays: moves === "playing", branch, status: status ?? "" };
   }
 
-  async until(what, holds) {
-    for (let tries = 0; tries < 300; tries++) {
+  async until(what, holds, seconds = 30) {
+    for (let tries = 0; tries < 10 * seconds; tries++) {
       const state = await this.state();
       if (holds(state)) return state;
       await new Promise((resolve) => setTimeout(resolve, 100));
@@ -285,6 +286,21 @@ async function worksByHand(context, home, said) {
   await next.page.close({ runBeforeUnload: false });
 }
 
+/** Runs of a sweep are made between frames, and the scene goes on meanwhile. */
+async function sweeps(context, home, said) {
+  const tab = await Tab.open(context, `${home}#circle-three`, said);
+  await tab.page.mouse.click(...SWEEP.tab);
+  await tab.page.waitForTimeout(500);
+  await tab.picture("sweep-panel");
+  await tab.differs("sweep-map", SWEEP.panel, () => tab.page.mouse.click(...SWEEP.start));
+  const { time } = await tab.state();
+  const { status } = await tab.until("the sweep ends", (state) => /^Sweep of 81 runs: \d+ meet/.test(state.status), 120);
+  assert((await tab.state()).time > time, "the run has not gone on beside the sweep");
+  await tab.picture("sweep-done");
+  console.log(`${status}, on a page`);
+  await tab.page.close({ runBeforeUnload: false });
+}
+
 /** Every command of the lessons has a button that opens its lab beside the text, and its link leads to a run. */
 async function teaches(context, home, said) {
   const page = await context.newPage();
@@ -360,6 +376,7 @@ async function main() {
   const said = [];
   for (const scene of ["circle-three", "seven-v", "cars-yard"]) await runsAsTheProgram(context, home, said, scene);
   await worksByHand(context, home, said);
+  await sweeps(context, home, said);
   await teaches(context, home, said);
   await sleeps(browser, home, said);
   await drawsWithWebGpu(home, said);
