@@ -401,7 +401,16 @@ fn make(
     })?;
     effort.runs += made;
     effort.wall += clock();
-    if made == count { Ok(()) } else { Err(Failure::Interrupted(String::new())) }
+    if made == count {
+        return Ok(());
+    }
+    Err(if interrupt::asked() {
+        Failure::Interrupted(String::new())
+    } else {
+        Failure::Machine(
+            "the system gives no threads to make runs; close other programs, or raise its limit".to_owned(),
+        )
+    })
 }
 
 /// Panics of runs are rows of the table, and not printed besides.
