@@ -28,6 +28,8 @@ pub struct MapLine {
     pub stroke: Stroke,
     /// Its points; one that is not finite begins another stretch.
     pub points: Vec<[f64; 2]>,
+    /// Ticks on its side: each from a point of the line towards another.
+    pub ticks: Vec<[[f64; 2]; 2]>,
 }
 
 /// Values over two axes.
@@ -85,6 +87,8 @@ const BAR: f64 = 8.0;
 const GAP: f64 = 8.0;
 /// Height of a map, as a share of its width.
 const SHAPE: f64 = 0.82;
+/// Length of the ticks on a side of a line, points.
+const SIDE: f64 = 3.2;
 /// Under a map: labels of ticks and of the axis.
 const FOOT: f64 = 23.0;
 
@@ -263,6 +267,13 @@ impl HeatMap {
                 let inside = [x, y].iter().all(|at| (-1e-9..=1.0 + 1e-9).contains(at));
                 inside.then_some([left + x * wide, top + (1.0 - y) * high])
             };
+            for [from, towards] in &line.ticks {
+                let (Some([x, y]), Some([to_x, to_y])) = (place(from), place(towards)) else { continue };
+                let share = SIDE / math::hypot(to_x - x, to_y - y).max(SIDE);
+                let end = [x + share * (to_x - x), y + share * (to_y - y)];
+                svg.line([x, y], end, "stroke=\"#fff\" stroke-width=\"2.4\"");
+                svg.line([x, y], end, "stroke=\"#1e1e22\" stroke-width=\"0.9\"");
+            }
             let places: Vec<Option<[f64; 2]>> = line.points.iter().map(place).collect();
             for stretch in places.split(Option::is_none) {
                 let stretch: Vec<[f64; 2]> = stretch.iter().copied().flatten().collect();

@@ -53,6 +53,8 @@ pub struct ReportTable {
     pub head: Vec<String>,
     /// Cells.
     pub rows: Vec<Vec<String>>,
+    /// Whether its cells are words, which are broken into lines, instead of numbers.
+    pub words: bool,
 }
 
 /// Everything that a report shows.

@@ -122,7 +122,8 @@ fn films(html: &mut String, report: &Report) {
 fn table(html: &mut String, table: &ReportTable) {
     let _ = writeln!(
         html,
-        "<section class=\"table\">\n<table>\n<caption>{}</caption>\n<thead><tr>",
+        "<section class=\"table\">\n<table{}>\n<caption>{}</caption>\n<thead><tr>",
+        if table.words { " class=\"words\"" } else { "" },
         escape(&table.caption)
     );
     for cell in &table.head {

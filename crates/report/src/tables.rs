@@ -20,6 +20,7 @@ pub(crate) fn laws(runs: &[FinishedRun], cases: &[Case], edge: usize) -> ReportT
     let transient = runs.first().and_then(|ran| ran.trace.efforts.get(edge)).map_or(0.0, |e| e.transient);
     let first = format!("first {}", quantity(transient, "s"));
     ReportTable {
+        words: false,
         caption: format!(
             "Follower 1 under every law and observer constant. Settled: root mean square over the last fifth of the run. \
              Settles: time from which the error stays within the band of the scene. Asked for: before limits, over the {first}."
@@ -68,6 +69,7 @@ pub(crate) fn edges(run: &Trace) -> ReportTable {
         Some([&[name][..], &errors, &costs(run, edge)?].concat())
     };
     ReportTable {
+        words: false,
         caption: if run.fleet.edges.len() > LISTED {
             format!("The {LISTED} of {} edges whose errors stay largest.", run.fleet.edges.len())
         } else {
@@ -86,6 +88,7 @@ pub(crate) fn digests(runs: &[FinishedRun]) -> ReportTable {
         vec![trace.name.clone(), length, seed, trace.digest.clone()]
     };
     ReportTable {
+        words: false,
         caption: "Digest of every run: the same scene, seed and build give the same one.".to_owned(),
         head: words(&["run", "length", "seed", "digest"], &[]),
         rows: runs.iter().map(row).collect(),

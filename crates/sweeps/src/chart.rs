@@ -126,7 +126,7 @@ impl ChartSide {
     }
 }
 
-/// The sides between neighbouring cells of a map as a line over it; `None` where the study has no map.
+/// The sides between neighbouring cells of a map as a line over it, with ticks towards the first of each pair; `None` where the study has no map.
 pub fn edge_line(design: &Design, pairs: &[[u64; 2]]) -> Option<MapLine> {
     let [across, up] = design.axes() else { return None };
     let sides = [ChartSide::of(design, across)?, ChartSide::of(design, up)?];
@@ -145,9 +145,13 @@ pub fn edge_line(design: &Design, pairs: &[[u64; 2]]) -> Option<MapLine> {
         };
         if logarithmic { (here * there).sqrt() } else { f64::midpoint(here, there) }
     };
-    let mut points = vec![];
-    for [a, b] in pairs {
-        let [a, b] = [a.min(b), a.max(b)].map(|cell| design.places(*cell));
+    let (mut points, mut ticks) = (vec![], vec![]);
+    for pair in pairs {
+        let middle = |cell: u64| {
+            let places = design.places(cell);
+            [0, 1].map(|k| sides[k].axis.values[places[k] as usize])
+        };
+        let [a, b] = [pair[0].min(pair[1]), pair[0].max(pair[1])].map(|cell| design.places(cell));
         let ([x, y], beside) = ([a[0] as i64, a[1] as i64], a[0] != b[0]);
         let ends = [-1, 1].map(|by| {
             if beside {
@@ -158,8 +162,15 @@ pub fn edge_line(design: &Design, pairs: &[[u64; 2]]) -> Option<MapLine> {
         });
         points.extend(ends);
         points.push([f64::NAN; 2]);
+        let towards = middle(pair[0]);
+        let crossing = if beside {
+            [halfway(&sides[0], x, 1), towards[1]]
+        } else {
+            [towards[0], halfway(&sides[1], y, 1)]
+        };
+        ticks.push([crossing, towards]);
     }
-    Some(MapLine { points, ..MapLine::default() })
+    Some(MapLine { points, ticks, ..MapLine::default() })
 }
 
 /// A value of a key as a number, in degrees if it is one.
@@ -199,6 +210,7 @@ fn empty() -> CellSummary {
         share: f64::NAN,
         interval: [0.0, 1.0],
         with_contacts: 0,
+        alike: false,
         quantiles: vec![],
     }
 }
@@ -328,9 +340,14 @@ fn map_of_share(
 ) -> StudyFigure {
     let map = map_of(design, &summary.cells, axes, sides, ChartQuantity::Met);
     let map = HeatMap { lines: lines.to_vec(), ..map };
+    let drawn = if lines.is_empty() {
+        ""
+    } else {
+        " Lines are borders between cells; ticks are on the side where it holds, or where most runs meet their expectations."
+    };
     let others = design.axes().len() - 2;
     let over = if others == 0 { String::new() } else { ", over all values of the other keys".to_owned() };
-    let caption = format!("The {MET}, over {} and {}{over}.", sides[0].key, sides[1].key);
+    let caption = format!("The {MET}, over {} and {}{over}.{drawn}", sides[0].key, sides[1].key);
     StudyFigure { stem: "map-met".to_owned(), caption, svg: map.svg() }
 }
 

@@ -25,7 +25,10 @@ pub struct CellSummary {
     pub interval: [f64; 2],
     /// Runs with contacts.
     pub with_contacts: u64,
-    /// 5 %, 50 % and 95 % of each of the [`MEASURES`], of the runs that have it; NaN where none has.
+    /// Whether it has several runs and all are the same, bit for bit.
+    pub alike: bool,
+    /// 5 %, 50 % and 95 % of each of the [`MEASURES`], of the runs that have it; NaN where none has. Of settling times those of
+    /// all runs, NaN where so many settle by no time.
     pub quantiles: Vec<[f64; 3]>,
 }
 
@@ -70,6 +73,8 @@ struct OpenCell {
     runs: u64,
     met: u64,
     with_contacts: u64,
+    digest: Option<String>,
+    differs: bool,
     values: Vec<String>,
     measures: Vec<Vec<f64>>,
 }
@@ -147,6 +152,8 @@ impl OpenCell {
         self.met += u64::from(row.met);
         self.with_contacts += u64::from(row.contacts > 0);
         self.values.clone_from(&row.point.values);
+        self.differs |= self.digest.as_ref().is_some_and(|digest| *digest != row.digest);
+        self.digest.get_or_insert_with(|| row.digest.clone());
         self.measures.resize(MEASURES.len(), vec![]);
         for (all, value) in self.measures.iter_mut().zip(&row.measures) {
             all.extend(value.is_finite().then_some(*value));
@@ -160,6 +167,13 @@ impl OpenCell {
                 value.clear();
             }
         }
+        let mut measures = self.measures;
+        for (all, measure) in measures.iter_mut().zip(&MEASURES) {
+            // A run that does not settle settles later than all that do.
+            if measure.column == SETTLING {
+                all.resize(self.runs as usize, f64::INFINITY);
+            }
+        }
         CellSummary {
             cell,
             values,
@@ -168,10 +182,14 @@ impl OpenCell {
             share: self.met as f64 / self.runs.max(1) as f64,
             interval: wilson(self.met, self.runs),
             with_contacts: self.with_contacts,
-            quantiles: self.measures.into_iter().map(quantiles).collect(),
+            alike: self.runs > 1 && !self.differs,
+            quantiles: measures.into_iter().map(quantiles).collect(),
         }
     }
 }
+
+/// The measure that a run has only if it settles.
+const SETTLING: &str = "settling_time_s";
 
 /// 5 %, 50 % and 95 % of some values, between two values in proportion; NaN of none.
 fn quantiles(mut values: Vec<f64>) -> [f64; 3] {
@@ -181,7 +199,8 @@ fn quantiles(mut values: Vec<f64>) -> [f64; 3] {
         let place = share * last as f64;
         let (low, within) = (place.floor(), place.fract());
         let [a, b] = [low as usize, (low as usize + 1).min(last)].map(|k| values[k]);
-        a + within * (b - a)
+        let value = a + within * (b - a);
+        if value.is_finite() { value } else { f64::NAN }
     })
 }
 

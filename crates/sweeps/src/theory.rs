@@ -117,7 +117,7 @@ fn growth(scene: &Scene) -> f64 {
         .fold(f64::NAN, f64::max)
 }
 
-/// Where claims begin and cease to hold, as lines over the map of a study over two keys.
+/// Where claims begin and cease to hold, as lines over the map of a study over two keys, with ticks on the side on which they hold.
 pub fn theory_lines(design: &Design, cells: &[TheoryCell]) -> Vec<MapLine> {
     TheoryClaim::ALL.into_iter().filter_map(|claim| line_of(design, cells, claim)).collect()
 }
@@ -132,7 +132,8 @@ fn line_of(design: &Design, cells: &[TheoryCell], claim: TheoryClaim) -> Option<
             let mut next = places.clone();
             next[axis] += 1;
             if next[axis] < along.len && holds(&places) != holds(&next) {
-                pairs.push([cell.cell, design.cell_at(&next)]);
+                let pair = [cell.cell, design.cell_at(&next)];
+                pairs.push(if holds(&places) == Some(true) { pair } else { [pair[1], pair[0]] });
             }
         }
     }

@@ -5,6 +5,7 @@ use super::{StudyArgs, keep};
 use crate::failure::Failure;
 use crate::print::say;
 use figures::MapLine;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::Path;
 use sweeps::{BoundarySearch, Experiment, RunRow, StudyFolder, edge_line, for_every_row};
@@ -78,6 +79,13 @@ pub(super) fn search(
 }
 
 impl FoundEdge {
+    /// Values on both sides of it, first those whose runs meet their expectations.
+    pub(super) fn json(&self, experiment: &Experiment) -> Value {
+        let design = experiment.design();
+        let values = |cell: &u64| design.point(cell * design.runs_per_cell()).values;
+        self.pairs.iter().map(|[met, unmet]| json!({ "met": values(met), "unmet": values(unmet) })).collect()
+    }
+
     /// Prints where the edge is, and what it saved.
     pub(super) fn tell(&self, experiment: &Experiment) {
         let (design, study) = (experiment.design(), experiment.study());

@@ -5,10 +5,11 @@ use super::tell;
 use crate::failure::Failure;
 use crate::film;
 use crate::load::build;
-use figures::MapLine;
+use figures::{MapLine, Stroke};
 use footage::{DrawJob, FilmJob, PictureOptions};
 use output::write_whole;
 use report::{Rasterizer, Report, ReportFigure, ReportFilm};
+use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
 use studies::{PROGRAM, RecordSource};
@@ -33,7 +34,8 @@ pub(super) fn complete(
         return Ok(summary);
     }
     write_whole(&folder.join("summary.csv"), tell::csv(experiment, &summary).as_bytes())?;
-    let charts = charts(experiment.design(), &summary, lines);
+    let lines = kept_lines(folder, lines)?;
+    let charts = charts(experiment.design(), &summary, &lines);
     let figures = folder.join("figures");
     fs::create_dir_all(&figures).map_err(output::Error::io("create", &figures))?;
     let rasterizer = Rasterizer::new(&[rendering::FONT]);
@@ -61,6 +63,72 @@ pub(super) fn complete(
     };
     write_whole(&folder.join("report.html"), report::page(&report, rendering::FONT).as_bytes())?;
     Ok(summary)
+}
+
+/// A line over a map as `lines.json` has it.
+#[derive(Serialize, Deserialize)]
+struct KeptLine {
+    name: String,
+    dashes: Dashes,
+    stretches: Vec<Vec<[f64; 2]>>,
+    ticks: Vec<[[f64; 2]; 2]>,
+}
+
+/// How it is drawn.
+#[derive(Serialize, Deserialize, Clone, Copy)]
+#[serde(rename_all = "lowercase")]
+enum Dashes {
+    Solid,
+    Dashed,
+    Dotted,
+}
+
+impl KeptLine {
+    fn of(line: &MapLine) -> Self {
+        let finite = |point: &&[f64; 2]| point.iter().all(|number| number.is_finite());
+        let stretches = line.points.split(|point| !finite(&point)).filter(|stretch| !stretch.is_empty());
+        Self {
+            name: line.name.clone(),
+            dashes: match line.stroke {
+                Stroke::Dashed => Dashes::Dashed,
+                Stroke::Dotted => Dashes::Dotted,
+                _ => Dashes::Solid,
+            },
+            stretches: stretches.map(<[_]>::to_vec).collect(),
+            ticks: line.ticks.clone(),
+        }
+    }
+
+    fn line(self) -> MapLine {
+        let stretches = self.stretches.into_iter();
+        MapLine {
+            name: self.name,
+            stroke: match self.dashes {
+                Dashes::Solid => Stroke::Solid,
+                Dashes::Dashed => Stroke::Dashed,
+                Dashes::Dotted => Stroke::Dotted,
+            },
+            points: stretches.flat_map(|stretch| stretch.into_iter().chain([[f64::NAN; 2]])).collect(),
+            ticks: self.ticks,
+        }
+    }
+}
+
+/// Lines that stay with the study: `lines.json` has those of all commands so far, of which a new one takes the place of the one with
+/// its name.
+fn kept_lines(folder: &Path, new: &[MapLine]) -> Result<Vec<MapLine>, Failure> {
+    let file = folder.join("lines.json");
+    let before = fs::read(&file).ok().and_then(|text| serde_json::from_slice::<Vec<KeptLine>>(&text).ok());
+    let before = before.unwrap_or_default().into_iter().map(KeptLine::line);
+    let mut lines: Vec<MapLine> =
+        before.filter(|line| new.iter().all(|other| other.name != line.name)).collect();
+    lines.extend(new.iter().cloned());
+    if !new.is_empty() {
+        let kept: Vec<KeptLine> = lines.iter().map(KeptLine::of).collect();
+        let text = serde_json::to_vec(&kept).map_err(|error| Failure::Machine(error.to_string()))?;
+        write_whole(&file, &text)?;
+    }
+    Ok(lines)
 }
 
 /// Films of the worst runs.

@@ -60,7 +60,7 @@ pub(super) fn merge(args: &MergeArgs) -> Outcome {
         )));
     }
     let summary = folder::complete(&args.out, &experiment, &args.shown, true, &[])?;
-    tell::study(&experiment, &summary, &args.out, &tell::SweepEffort::default(), &args.shown);
+    tell::study(&experiment, &summary, &args.out, &tell::SweepEffort::default(), &args.shown, &[]);
     Ok(())
 }
 
@@ -72,7 +72,7 @@ pub(super) fn show(args: &ShowArgs) -> Outcome {
     if !whole && !args.shown.quiet {
         note(&format!("{} of {} runs are there so far", summary.runs, manifest.runs));
     }
-    tell::study(&experiment, &summary, &args.folder, &tell::SweepEffort::default(), &args.shown);
+    tell::study(&experiment, &summary, &args.folder, &tell::SweepEffort::default(), &args.shown, &[]);
     Ok(())
 }
 

@@ -51,10 +51,10 @@ struct StudyArgs {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<Override>,
     /// Runs of every combination, each with a seed of its own
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     seeds: Option<u64>,
     /// How often numbers with a distribution are drawn for every combination of the others
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     samples: Option<u64>,
     /// How they are drawn: independent, latin-hypercube, sobol
     #[arg(long, value_parser = sampling)]
@@ -228,7 +228,7 @@ fn run(args: &StudyArgs) -> Outcome {
     };
     if range.end > runs {
         return Err(Failure::Usage(format!(
-            "the study has {}: no range ends behind {runs}",
+            "the study has {}: a range ends at {runs} at most",
             counted(runs, "run")
         )));
     }
@@ -289,7 +289,10 @@ fn run(args: &StudyArgs) -> Outcome {
     let said = if args.theory { Some(theory::ask(&experiment, args)?) } else { None };
     lines.extend(said.iter().flat_map(|said| sweeps::theory_lines(experiment.design(), said)));
     let summary = folder::complete(&folder, &experiment, &args.shown, range == (0..runs), &lines)?;
-    tell::study(&experiment, &summary, &folder, &effort, &args.shown);
+    let mut more = vec![];
+    more.extend(edge.iter().map(|edge| ("edge", edge.json(&experiment))));
+    more.extend(said.iter().map(|said| ("theory", theory::json(said, &summary))));
+    tell::study(&experiment, &summary, &folder, &effort, &args.shown, &more);
     if let Some(edge) = edge.filter(|_| !args.shown.quiet && !args.shown.json) {
         edge.tell(&experiment);
     }

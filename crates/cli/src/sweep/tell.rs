@@ -4,7 +4,7 @@ use super::ShownArgs;
 use crate::print::{json, say};
 use report::ReportTable;
 use scene::Values;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fmt::Write;
 use std::ops::Range;
 use std::path::Path;
@@ -64,23 +64,32 @@ pub(super) fn dry(experiment: &Experiment, range: &Range<u64>, args: &ShownArgs)
     }
 }
 
-/// A share with its interval.
-fn share(met: u64, runs: u64, interval: [f64; 2]) -> String {
-    let [low, high] = interval.map(|end| 100.0 * end);
+/// A share, with its interval where its runs are a sample.
+fn share(met: u64, runs: u64, interval: Option<[f64; 2]>) -> String {
     let percent = 100.0 * met as f64 / runs.max(1) as f64;
-    format!("{percent:.2} % ({low:.2} to {high:.2} %)")
+    let interval = interval.map(|ends| ends.map(|end| 100.0 * end));
+    let words = interval.map_or_else(String::new, |[low, high]| format!(" ({low:.2} to {high:.2} %)"));
+    format!("{percent:.2} %{words}")
 }
 
 /// What all runs show, in a sentence or two.
 pub(super) fn lead(experiment: &Experiment, summary: &StudySummary) -> String {
     let study = experiment.study();
+    // Of several cells the runs are those of a grid, or of a part of it.
+    let sample = |interval| (study.cells() == 1).then_some(interval);
     let mut text = format!(
         "{} of {} meet what their scene expects: {}; {} without contact.",
         summary.met,
         counted(summary.runs, "run"),
-        share(summary.met, summary.runs, summary.met_interval),
-        share(summary.runs - summary.with_contacts, summary.runs, summary.contact_free_interval)
+        share(summary.met, summary.runs, sample(summary.met_interval)),
+        share(summary.runs - summary.with_contacts, summary.runs, sample(summary.contact_free_interval))
     );
+    if summary.cells.iter().any(|cell| cell.alike) {
+        text.push_str(
+            " Runs with the same values are the same, whatever their seed: nothing in the scene is drawn. Scatter the starts, or add \
+             noise; the intervals of cells say nothing.",
+        );
+    }
     let odd = summary.by_status.iter().filter(|(word, _)| **word != "complete");
     for (word, count) in odd {
         let _ = write!(text, " {} {word}.", counted(*count, "run"));
@@ -132,7 +141,7 @@ fn cells(experiment: &Experiment, cells: &[CellSummary]) -> ReportTable {
     };
     let caption = "Runs of each combination: the share that meets its expectations with its 95 % interval, runs with \
         contacts, medians and other quantiles of those that have the number";
-    ReportTable { caption: caption.to_owned(), head, rows: cells.iter().map(row).collect() }
+    ReportTable { caption: caption.to_owned(), head, rows: cells.iter().map(row).collect(), words: false }
 }
 
 /// What `echelon run` needs to make a run again.
@@ -175,13 +184,15 @@ pub(super) fn tables(experiment: &Experiment, summary: &StudySummary) -> Vec<Rep
         let rows =
             summary.by_failure.iter().map(|(key, count)| vec![key.clone(), count.to_string()]).collect();
         let caption = "What was not met first".to_owned();
-        tables.push(ReportTable { caption, head: vec!["expectation".to_owned(), "runs".to_owned()], rows });
+        let head = vec!["expectation".to_owned(), "runs".to_owned()];
+        tables.push(ReportTable { caption, head, rows, words: false });
     }
     let unmet: Vec<&RunRow> = summary.worst.iter().filter(|row| !row.met).collect();
     if !unmet.is_empty() {
         let rows = unmet.iter().map(|row| vec![worst_line(row), again(experiment, row)]).collect();
         let caption = "The worst runs, and how each is made again".to_owned();
-        tables.push(ReportTable { caption, head: vec!["run".to_owned(), "command".to_owned()], rows });
+        let head = vec!["run".to_owned(), "command".to_owned()];
+        tables.push(ReportTable { caption, head, rows, words: true });
     }
     tables
 }
@@ -239,6 +250,7 @@ pub(super) fn study(
     folder: &Path,
     effort: &SweepEffort,
     args: &ShownArgs,
+    more: &[(&str, Value)],
 ) {
     if args.json {
         let worst: Vec<_> = summary
@@ -252,10 +264,15 @@ pub(super) fn study(
                 })
             })
             .collect();
-        json(&json!({
+        let mut told = json!({
             "folder": folder.display().to_string(), "fingerprint": experiment.fingerprint(), "summary": summary,
+            "measures": MEASURES.iter().map(|measure| measure.column).collect::<Vec<_>>(),
             "worst": worst, "made": effort.runs, "wall_seconds": effort.wall,
-        }));
+        });
+        for (key, value) in more {
+            told[*key] = value.clone();
+        }
+        json(&told);
         return;
     }
     if args.quiet {

@@ -6,6 +6,7 @@ use crate::interrupt;
 use crate::print::say;
 use crate::progress::Progress;
 use output::write_whole;
+use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
 use sweeps::{Experiment, StudySummary, TheoryCell, TheoryClaim, agreement, theory};
@@ -38,6 +39,18 @@ pub(super) fn ask(experiment: &Experiment, args: &StudyArgs) -> Result<Vec<Theor
     })
 }
 
+/// In how many cells claims hold, and what runs say.
+pub(super) fn json(said: &[TheoryCell], summary: &StudySummary) -> Value {
+    let claims = TheoryClaim::ALL.into_iter().map(|claim| {
+        let [[both, claimed], [met, neither]] = agreement(claim, said, &summary.cells);
+        json!({
+            "claim": claim.words(), "holds_and_met": both, "holds_and_unmet": claimed, "fails_and_met": met,
+            "fails_and_unmet": neither,
+        })
+    });
+    claims.collect()
+}
+
 /// Writes theory.csv, and prints where runs say otherwise.
 pub(super) fn keep(
     folder: &Path,
@@ -61,11 +74,14 @@ pub(super) fn keep(
     if args.quiet || args.json {
         return Ok(());
     }
+    if TheoryClaim::ALL.iter().all(|claim| said.iter().all(|cell| claim.holds(cell).is_none())) {
+        say("theory says nothing of these cells: its claims are of output feedback, and of β in robust laws");
+    }
     for claim in TheoryClaim::ALL {
         let [[both, claimed], [met, neither]] = agreement(claim, said, &summary.cells);
         if both + claimed + met + neither > 0 {
             say(&format!(
-                "{}: in {} of {}; of these {claimed} do not meet their expectations, and {met} of the others do",
+                "{}: true in {} of {}, of which {claimed} do not meet their expectations; not in the rest, of which {met} do",
                 claim.words(),
                 both + claimed,
                 counted(both + claimed + met + neither, "cell"),
