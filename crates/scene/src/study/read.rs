@@ -14,6 +14,7 @@ use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
 use vocabulary::Word;
+use vocabulary::counted;
 
 keys! {
     /// A study: runs of a scene that differ.
@@ -135,7 +136,21 @@ fn read_table(text: &str, source: usize, reporter: &mut Reporter) -> Option<Vec<
         let record = match record {
             Ok(record) => record,
             Err(error) => {
-                reporter.report(whole, format!("not a row of the table: {error}"));
+                let (span, text) = match error.kind() {
+                    csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+                        let start = pos.as_ref().map_or(0, |pos| pos.byte() as usize);
+                        let span = Span { source, start, end: start };
+                        (
+                            span,
+                            format!(
+                                "this row has {}, and there are {expected_len} keys",
+                                counted(*len, "value")
+                            ),
+                        )
+                    }
+                    _ => (whole, format!("not a row of the table: {error}")),
+                };
+                reporter.report(span, text);
                 return None;
             }
         };
@@ -207,7 +222,11 @@ pub(super) fn located(text: &str, path: &Path, faults: &[StudyFault]) -> Option<
         collect(node, "", &mut found, &mut reporter);
         found
     });
-    let place = |key: &str| vary.iter().find(|varied| varied.parameter.key == key).map(|varied| varied.span);
+    // What is not there is in the table.
+    let table = root.get("table").map(|node| node.span);
+    let place = |key: &str| {
+        vary.iter().find(|varied| varied.parameter.key == key).map(|varied| varied.span).or(table)
+    };
     let places: Vec<Option<Span>> = faults.iter().map(|fault| place(fault.key.as_deref()?)).collect();
     if places.iter().all(Option::is_none) {
         return None;
@@ -313,6 +332,11 @@ mod tests {
             parse("schema = 1\nscene = \"circle-three\"\ntable = \"rows.csv\"\n", &path).expect("a study");
         assert_eq!(study.cells(), 2);
         assert_eq!(parse(&study.to_toml(), &path).expect("its own text"), study);
+        std::fs::write(folder.join("rows.csv"), "law.k,law.beta\n1,2\n3\n").expect("rows");
+        let errors = parse("schema = 1\nscene = \"circle-three\"\ntable = \"rows.csv\"\n", &path)
+            .expect_err("a short row");
+        let first = &errors.all()[0];
+        assert!(first.line == 3 && first.message.contains("1 value, and there are 2 keys"), "{errors}");
         std::fs::write(folder.join("rows.csv"), "law.k\n").expect("rows");
         assert!(parse("schema = 1\nscene = \"circle-three\"\ntable = \"rows.csv\"\n", &path).is_err());
         std::fs::remove_dir_all(&folder).expect("removed");
