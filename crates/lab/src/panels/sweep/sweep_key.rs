@@ -6,7 +6,7 @@ use crate::panels::controls::{Range, SliderRow};
 use crate::panels::{law, safety, sensing, world};
 use crate::symbols::{self, Symbol};
 use scene::{Follow, Path, Robot, Role, Scene, SceneText, SensingKind, SwitchingKind};
-use vocabulary::{HeadingReference, LawKind, ScalarTrajectory, math};
+use vocabulary::{HeadingReference, LawKind, ScalarTrajectory};
 
 /// A key of the scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -244,9 +244,10 @@ fn usual(now: f64, range: Option<Range>, degrees: bool) -> [f64; 2] {
     match range {
         _ if degrees && range.is_none() => [now - 45.0, now + 45.0].map(|angle| short(angle.round())),
         Some(Range { span, hard, logarithmic: true }) if now > 0.0 => {
-            let factor = if span[1] / span[0] > 1000.0 { 10.0 } else { 4.0 };
-            let [low, high] = [now / factor, now * factor].map(|end| end.clamp(hard[0], hard[1]));
-            [round_down(low).max(hard[0]), round_up(high).min(hard[1])].map(short)
+            // The middle one of its values is the present one.
+            let factor = if span[1] / span[0] > 1000.0 { 10.0_f64 } else { 4.0 };
+            let factor = factor.min(now / hard[0]).min(hard[1] / now).max(1.25);
+            [now / factor, now * factor].map(short)
         }
         Some(Range { span: [low, high], .. }) => {
             let high = if 2.0 * now < 0.5 * high { high } else { 2.0 * now };
@@ -260,29 +261,15 @@ fn usual(now: f64, range: Option<Range>, degrees: bool) -> [f64; 2] {
     }
 }
 
-/// The next of 1, 2, 5, 10, … that is not above a number.
-fn round_down(value: f64) -> f64 {
-    let decade = math::powf(10.0, (math::log10(value) + 1e-9).floor());
-    let factor = [5.0, 2.0].into_iter().find(|factor| factor * decade <= value * (1.0 + 1e-9));
-    factor.unwrap_or(1.0) * decade
-}
-
-/// The next of 1, 2, 5, 10, … that is not below a number.
-fn round_up(value: f64) -> f64 {
-    let decade = math::powf(10.0, (math::log10(value) + 1e-9).floor());
-    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * decade >= value * (1.0 - 1e-9));
-    factor.unwrap_or(10.0) * decade
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn ranges_at_first_are_round_and_hold_what_is_there() {
+    fn ranges_at_first_have_what_is_there_in_their_middle() {
         let factors = Some(Range::factors(0.1, 20.0));
-        assert_eq!(usual(5.0, factors, false), [1.0, 20.0]);
-        assert_eq!(usual(3.0, factors, false), [0.5, 20.0]);
+        assert_eq!(usual(5.0, factors, false), [1.25, 20.0]);
+        assert_eq!(usual(3.0, factors, false), [0.75, 12.0]);
         assert_eq!(usual(0.001, Some(Range::factors(1e-4, 1.0)), false), [0.0001, 0.01]);
         assert_eq!(usual(0.01, Some(Range::linear(0.0, 0.3)), false), [0.0, 0.3]);
         assert_eq!(usual(0.0, Some(Range::linear(0.0, 0.9)), false), [0.0, 0.9]);

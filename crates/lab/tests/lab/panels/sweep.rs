@@ -50,10 +50,10 @@ fn the_keys_of_the_scene_can_be_chosen_with_ranges_around_them() {
     assert_says(&panel, &["9 × 9 values: K, ε", "▶ Start 81 runs", "Copy command"]);
     let actions = enter(&mut panel, Role::SpinButton, "Across values", "5");
     let now = planned(&actions).clone();
-    assert_eq!((now.sides[0].values(), now.runs()), ("log:0.5..20/5".to_owned(), 45));
+    assert_eq!((now.sides[0].values(), now.runs()), ("log:0.75..12/5".to_owned(), 45));
     panel.state_mut().app_state.act(&Action::PlanSweep(now));
     let actions = click(&mut panel, Role::CheckBox, "Across log");
-    assert_eq!(planned(&actions).sides[0].values(), "0.5..20/5");
+    assert_eq!(planned(&actions).sides[0].values(), "0.75..12/5");
     let actions = choose(&mut panel, "Up key", "Bearing ψ of right (°)");
     assert_eq!(planned(&actions).sides[1].values(), "-180..-90 deg/9");
     let actions = choose(&mut panel, "Up key", "one key only");
