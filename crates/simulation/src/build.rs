@@ -27,8 +27,9 @@ pub fn build(scene: &Scene) -> Result<Setup, BuildError> {
     build_for(scene, PlanPurpose::Driving)
 }
 
-/// Puts the run of a scene together that another run changes to as it goes on ([`apply_parameters`](crate::Simulation::apply_parameters)). That one plans from
-/// where it is, so here only the first way to every goal is looked for, to know that there is one.
+/// Puts the run of a scene together that another run changes to as it goes on
+/// ([`apply_parameters`](crate::Simulation::apply_parameters)). That one plans from where it is, so here only the first way to
+/// every goal is looked for, to know that there is one.
 ///
 /// # Errors
 /// Those of [`build`].

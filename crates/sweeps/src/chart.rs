@@ -126,7 +126,8 @@ impl ChartSide {
     }
 }
 
-/// The sides between neighbouring cells of a map as a line over it, with ticks towards the first of each pair; `None` where the study has no map.
+/// The sides between neighbouring cells of a map as a line over it, with ticks towards the first of each pair; `None` where the
+/// study has no map.
 pub fn edge_line(design: &Design, pairs: &[[u64; 2]]) -> Option<MapLine> {
     let [across, up] = design.axes() else { return None };
     let sides = [ChartSide::of(design, across)?, ChartSide::of(design, up)?];

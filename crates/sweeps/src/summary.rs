@@ -182,7 +182,8 @@ impl OpenCell {
             share: self.met as f64 / self.runs.max(1) as f64,
             interval: wilson(self.met, self.runs),
             with_contacts: self.with_contacts,
-            alike: self.runs > 1 && !self.differs,
+            // What did not run has no digest.
+            alike: self.runs > 1 && !self.differs && self.digest.is_some_and(|digest| !digest.is_empty()),
             quantiles: measures.into_iter().map(quantiles).collect(),
         }
     }
@@ -199,7 +200,8 @@ fn quantiles(mut values: Vec<f64>) -> [f64; 3] {
         let place = share * last as f64;
         let (low, within) = (place.floor(), place.fract());
         let [a, b] = [low as usize, (low as usize + 1).min(last)].map(|k| values[k]);
-        let value = a + within * (b - a);
+        // Of a run that never settles nothing is in proportion.
+        let value = if within == 0.0 { a } else { a + within * (b - a) };
         if value.is_finite() { value } else { f64::NAN }
     })
 }
@@ -277,5 +279,33 @@ mod tests {
     fn what_no_run_has_is_no_number() {
         assert!(quantiles(vec![]).iter().all(|value| value.is_nan()));
         assert_eq!(quantiles(vec![3.0]), [3.0; 3]);
+        let never = f64::INFINITY;
+        assert_eq!(quantiles(vec![never, 1.0, 3.0, never, 2.0])[1], 3.0);
+        assert!(quantiles(vec![1.0, 2.0, never, never])[1].is_nan());
+    }
+
+    /// Most runs of the first cell never settle; the second has several seeds and one run.
+    #[test]
+    fn runs_that_never_settle_count_and_those_that_are_alike_are_told() {
+        let parameters =
+            vec![StudyParameter { key: "law.k".to_owned(), values: "1,2".parse().expect("values") }];
+        let design = Design::new(Study { parameters, seeds: 3, ..Study::of_scene("circle-three", "t") });
+        let settling = MEASURES.iter().position(|measure| measure.column == SETTLING).expect("a measure");
+        let cell = |cell: u64, times: [f64; 3], digests: [&str; 3]| {
+            let rows: Vec<RunRow> = (0..3)
+                .map(|seed| {
+                    let mut row = row(&design, 3 * cell + seed as u64, true);
+                    row.measures[settling] = times[seed];
+                    row.digest = digests[seed].to_owned();
+                    row
+                })
+                .collect();
+            CellSummary::of(cell, &rows, &design)
+        };
+        let rare = cell(0, [4.0, f64::NAN, f64::NAN], ["a", "b", "a"]);
+        assert!(rare.quantiles[settling][1].is_nan() && !rare.alike, "{rare:?}");
+        let usual = cell(1, [4.0, 5.0, f64::NAN], ["a", "a", "a"]);
+        assert!(usual.quantiles[settling][1] == 5.0 && usual.alike, "{usual:?}");
+        assert!(!cell(1, [4.0; 3], ["", "", ""]).alike, "nothing has run");
     }
 }

@@ -31,7 +31,7 @@ pub enum TheoryClaim {
     Stable,
     /// β is as large as Lemma 4.1 wants it.
     RobustGain,
-    /// ε is as small as Theorem 4.3 wants it.
+    /// ε is at most ε₁ (eqs 44-46).
     SmallEpsilon,
 }
 

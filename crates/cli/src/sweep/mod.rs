@@ -74,7 +74,7 @@ struct StudyArgs {
     #[arg(long, value_name = "ANSWER", value_parser = ["met"], conflicts_with_all = ["shard", "range"])]
     boundary: Option<String>,
     /// Hold the map over two keys against theory: draw where the sampled loop is stable, where β is as large as Lemma 4.1 wants it
-    /// and ε as small as Theorem 4.3 does, print in how many cells runs say otherwise, and write theory.csv
+    /// and where ε is below the paper's ε₁, print in how many cells runs say otherwise, and write theory.csv
     #[arg(long, conflicts_with_all = ["shard", "range"])]
     theory: bool,
     /// Make one of N parts of the study, such as 3/16

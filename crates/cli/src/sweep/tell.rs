@@ -140,7 +140,7 @@ fn cells(experiment: &Experiment, cells: &[CellSummary]) -> ReportTable {
         values.chain(counts).chain(numbers).collect()
     };
     let caption = "Runs of each combination: the share that meets its expectations with its 95 % interval, runs with \
-        contacts, medians and other quantiles of those that have the number";
+        contacts, medians and other quantiles of those that have the number; one that never settles settles later than all others";
     ReportTable { caption: caption.to_owned(), head, rows: cells.iter().map(row).collect(), words: false }
 }
 
@@ -197,16 +197,18 @@ pub(super) fn tables(experiment: &Experiment, summary: &StudySummary) -> Vec<Rep
     tables
 }
 
+/// A field of a CSV file.
+pub(super) fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}
+
 /// `summary.csv`.
 pub(super) fn csv(experiment: &Experiment, summary: &StudySummary) -> String {
     let parameters = &experiment.study().parameters;
-    let field = |text: &str| {
-        if text.contains([',', '"', '\n']) {
-            format!("\"{}\"", text.replace('"', "\"\""))
-        } else {
-            text.to_owned()
-        }
-    };
     let mut text = String::from("cell");
     for parameter in parameters {
         let _ = write!(text, ",{}", field(&parameter.key));

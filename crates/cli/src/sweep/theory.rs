@@ -1,5 +1,6 @@
 //! `echelon sweep --theory`: what certificates say of the cells of a map, beside what the runs did.
 
+use super::tell::field;
 use super::{ShownArgs, StudyArgs};
 use crate::failure::Failure;
 use crate::interrupt;
@@ -59,13 +60,17 @@ pub(super) fn keep(
     summary: &StudySummary,
     args: &ShownArgs,
 ) -> Result<(), Failure> {
-    let keys = experiment.study().parameters.iter().map(|parameter| parameter.key.as_str());
-    let mut csv = ["cell"].into_iter().chain(keys).collect::<Vec<_>>().join(",");
-    csv += ",growth_per_period,beta_margin,epsilon_margin_s\n";
+    let mut csv = "cell,".to_owned();
+    for parameter in &experiment.study().parameters {
+        csv += &field(&parameter.key);
+        csv.push(',');
+    }
+    csv += "growth_per_period,beta_margin,epsilon_margin_s\n";
     let design = experiment.design();
     let number = |value: f64| if value.is_nan() { String::new() } else { value.to_string() };
     for cell in said {
-        let values = design.point(cell.cell * design.runs_per_cell()).values.join(",");
+        let values = design.point(cell.cell * design.runs_per_cell()).values;
+        let values = values.iter().map(|value| field(value.trim_matches('"'))).collect::<Vec<_>>().join(",");
         let numbers = [cell.growth, cell.beta_margin, cell.epsilon_margin].map(number).join(",");
         // Writing to a text cannot fail.
         let _ = writeln!(csv, "{},{values},{numbers}", cell.cell);

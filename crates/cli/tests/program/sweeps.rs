@@ -158,6 +158,27 @@ fn the_edge_is_the_one_of_the_whole_study() {
 }
 
 #[test]
+fn theory_is_drawn_over_the_map_and_stays_with_the_study() {
+    let root = tempfile::tempdir().expect("a folder");
+    let study = ["line-three", "--vary", "law.k=[5,5],[6,6]", "--vary", "time.period=0.01,0.2"];
+    let more = ["--seeds", "2", "--set", "time.duration=1", "--theory", "-o", "held"];
+    let (code, out, error) = told(&echelon(root.path(), &[&["sweep"], &study[..], &more[..]].concat()));
+    assert_eq!(code, 0, "{error}");
+    assert!(out.contains("sampled loop stable: true in 2 of 4 cells"), "{out}");
+    assert!(out.contains("the same, whatever their seed"), "{out}");
+    let read = |file: &str| fs::read_to_string(root.path().join("held").join(file)).expect("a file");
+    // A list is one field.
+    let theory = read("theory.csv");
+    let row = theory.lines().nth(1).expect("a row");
+    assert!(theory.starts_with("cell,law.k,time.period,growth_per_period,"), "{theory}");
+    assert!(row.starts_with("0,\"[5,5]\",0.01,0.9") && theory.lines().count() == 5, "{theory}");
+    let map = read("figures/map-met.svg");
+    assert!(map.contains("sampled loop stable"));
+    let (code, _, error) = told(&echelon(root.path(), &["sweep", "show", "held", "-q"]));
+    assert_eq!((code, read("figures/map-met.svg") == map), (0, true), "{error}");
+}
+
+#[test]
 fn runs_that_cannot_be_are_rows_and_the_others_go_on() {
     let root = tempfile::tempdir().expect("a folder");
     let study = ["sweep", "line-three", "--vary", "robots.follower-1.pose=uniform:-1..1", "--samples", "2"];
@@ -208,6 +229,8 @@ fn what_cannot_be_a_study_is_said_before_anything_runs() {
         (vec!["line-three", "--range", "5..9"], "the study has 1 run"),
         (vec!["line-three", "--shard", "4/3"], "from 1 to N"),
         (vec!["line-three", "--boundary", "met"], "--boundary needs"),
+        (vec!["line-three", "--theory", "--vary", "law.k=1,2"], "--theory needs two keys"),
+        (vec!["line-three", "--seeds", "0"], "0 is not in 1.."),
         (vec!["no-such-scene"], "no such file"),
         (vec!["vision-seven-v"], "take pictures"),
         (vec!["merge", "out", "study.toml"], "--study"),

@@ -13,8 +13,7 @@ use serde_json::{Value as Json, json};
 use std::f64::consts::PI;
 use std::fmt::Write;
 use std::path::Path;
-use vocabulary::Word;
-use vocabulary::counted;
+use vocabulary::{Word, counted};
 
 keys! {
     /// A study: runs of a scene that differ.
