@@ -91,10 +91,10 @@ class TestDeterminism:
         envs, env = FormationVectorEnv(SCENE, SCATTERED, 2), FormationEnv(SCENE, SCATTERED)
         observations, _ = envs.reset(seed=5)
         observation, _ = env.reset(seed=6)
-        ends = 0
+        ends, ended = 0, False
         for _ in range(450):
             assert (observations[1] == observation).all()
-            if ends and ended:
+            if ended:
                 observation, _ = env.reset()
                 reward, ended = 0.0, False
                 observations, rewards, terminated, truncated, _ = envs.step(np.zeros(envs.action_space.shape))

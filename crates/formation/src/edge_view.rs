@@ -42,7 +42,7 @@ impl EdgeView {
 
     pub(crate) fn leader_input(&self, law: &Law) -> LeaderInput {
         LeaderInput {
-            relative: Relative { distance: self.geometry.distance, ..self.output },
+            relative: Relative { distance: self.geometry.line.distance, ..self.output },
             rates: self.rates,
             wanted: self.set_point,
             motion: self.leader,

@@ -94,14 +94,14 @@ impl Law {
         let (geometry, v) = (input.geometry, input.own_speed);
         let rates = Vector2::from(input.rates);
         let mut b = Vector2::from(input.set_point.acceleration)
-            + geometry.drift(v)
-            + geometry.rate_column(v) * rates.x
+            + geometry.line.drift(v)
+            + geometry.line.rate_column(v) * rates.x
             + self.feedback(input);
         b += match self.kind {
             LawKind::FullState => self.leader_effect(geometry, v, input.leader),
             LawKind::RobustState | LawKind::OutputFeedback => self.robust_term(input.error),
         };
-        let u = geometry.minus_inverse_input(v, &b);
+        let u = geometry.line.minus_inverse_input(v, &b);
         Command { acceleration: u.x, turn_rate: u.y }
     }
 

@@ -4,7 +4,7 @@ use crate::hand_over::HandOver;
 use crate::law::Law;
 use crate::narrowing::NarrowingState;
 use crate::path_heading::PathHeading;
-use crate::relative::Geometry;
+use crate::relative::{Geometry, LineOfSight};
 use crate::standing::Standing;
 use vocabulary::{Observation, math};
 
@@ -100,8 +100,9 @@ fn share(period: f64, time: f64) -> f64 {
 /// The leader's speed along its heading, from what the follower does and the rates of [ℓ, φ], m/s: eqs 6-7 solved for it.
 fn leader_speed(law: &Law, seen: &Observation, [closing, turning]: [f64; 2]) -> f64 {
     let geometry = Geometry::new(&seen.relative, law.distance_min);
-    let along = seen.own_speed * geometry.cos_view - closing;
-    let across = turning * geometry.distance + seen.own_speed * geometry.sin_view;
+    let LineOfSight { distance, sin_view, cos_view } = geometry.line;
+    let along = seen.own_speed * cos_view - closing;
+    let across = turning * distance + seen.own_speed * sin_view;
     let speed = geometry.cos_bearing * along + geometry.sin_bearing * across;
     if speed.is_finite() { speed.max(0.0) } else { 0.0 }
 }

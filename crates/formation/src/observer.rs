@@ -15,9 +15,9 @@
 
 mod stretch;
 
-use crate::matrix_exponential::exponential;
-use crate::relative::Geometry;
-use nalgebra::{Matrix4, Vector4};
+use crate::matrix_exponential::{Cascade, exponential};
+use crate::relative::LineOfSight;
+use nalgebra::{Matrix2, Vector2, Vector4};
 pub(crate) use stretch::input_effect;
 use stretch::{DEGREE, Poly, PolynomialPiece, mean, shifted};
 use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, wrap};
@@ -62,13 +62,12 @@ impl Estimate {
 impl Observer {
     /// Right-hand side of eqs 31-32 at an instant: d[ŝ1, ŝ2]/dt. For continuous time.
     pub fn derivative(&self, estimate: &Estimate, sample: &EdgeSample) -> Estimate {
-        let geometry = Geometry::new(&sample.relative, self.distance_min);
+        let line = LineOfSight::new(&sample.relative, self.distance_min);
         let innovation = [
             sample.relative.distance - estimate.output[0],
             wrap(sample.relative.bearing - estimate.output[1]),
         ];
-        let input =
-            input_effect(&geometry, sample) - geometry.rate_column(sample.own_speed) * estimate.rates[0];
+        let input = input_effect(&line, sample) - line.rate_column(sample.own_speed) * estimate.rates[0];
         let mut out = Estimate::default();
         for i in 0..2 {
             out.output[i] = estimate.rates[i] + self.alpha1[i] / self.epsilon[i] * innovation[i];
@@ -136,6 +135,9 @@ impl Observer {
     /// The deviation at the end by its power series in time, in as many equal steps as keep it convergent.
     fn series(&self, start: Vector4<f64>, stretch: &PolynomialPiece) -> Vector4<f64> {
         let steps = (self.stiffness() * stretch.duration / SERIES_REACH).ceil().max(1.0);
+        if steps <= 1.0 {
+            return self.series_step(start, stretch.duration, &stretch.rate_column, &stretch.forcing);
+        }
         let share = 1.0 / steps;
         let mut x = start;
         for k in 0..steps as usize {
@@ -149,21 +151,20 @@ impl Observer {
 
     /// One step of `h` s; polynomials in t/h.
     fn series_step(&self, x: Vector4<f64>, h: f64, column: &[Poly; 2], forcing: &[Poly; 2]) -> Vector4<f64> {
-        let mut terms = [Vector4::zeros(); SERIES_TERMS];
-        terms[0] = x;
-        let mut sum = x;
-        for k in 0..SERIES_TERMS - 1 {
-            let mut next = Vector4::zeros();
-            for i in 0..2 {
-                let (d1, d2) = (terms[k][i], terms[k][2 + i]);
-                let coupling: f64 = (0..=k.min(DEGREE)).map(|j| column[i][j] * terms[k - j][2]).sum();
-                let push = if k <= DEGREE { forcing[i][k] } else { 0.0 };
-                next[i] = (d2 - self.alpha1[i] * d1) / self.epsilon[i];
-                next[2 + i] = push - coupling - self.alpha2[i] / self.epsilon[i] * d1;
+        // What drives the terms to come: the forcing, less what g_s makes of the distance's rate in those before.
+        let mut drive: [[f64; 2]; DEGREE + 1] = std::array::from_fn(|k| [forcing[0][k], forcing[1][k]]);
+        let rate = self.epsilon.map(|epsilon| 1.0 / epsilon);
+        let (mut term, mut sum) = (x, x);
+        for (k, inverse) in INVERSES.iter().enumerate() {
+            for (j, drive) in drive.iter_mut().enumerate() {
+                *drive = [drive[0] - column[0][j] * term[2], drive[1] - column[1][j] * term[2]];
             }
-            terms[k + 1] = next * (h / (k + 1) as f64);
-            sum += terms[k + 1];
-            if k > DEGREE && terms[k + 1].amax() <= 1e-17 * sum.amax() {
+            let output = |i: usize| (term[2 + i] - self.alpha1[i] * term[i]) * rate[i];
+            let rates = |i: usize| drive[0][i] - self.alpha2[i] * rate[i] * term[i];
+            term = Vector4::new(output(0), output(1), rates(0), rates(1)) * (h * inverse);
+            sum += term;
+            drive = std::array::from_fn(|j| if j < DEGREE { drive[j + 1] } else { [0.0; 2] });
+            if k > DEGREE && term.amax() <= 1e-17 * sum.amax() {
                 break;
             }
         }
@@ -176,20 +177,20 @@ impl Observer {
         let column = stretch.rate_column.map(|p| mean(&p));
         let particular = self.polynomial_solution(stretch, &column);
         let at_end: Vector4<f64> = particular.iter().sum();
-        let matrix = self.matrix(&column) * stretch.duration;
-        at_end + exponential(&matrix) * (start - particular[0])
+        let x = start - particular[0];
+        let transient = exponential(&(self.matrix(&column) * stretch.duration));
+        let [distance, bearing] = transient.apply([Vector2::new(x[0], x[2]), Vector2::new(x[1], x[3])]);
+        at_end + Vector4::new(distance.x, bearing.x, distance.y, bearing.y)
     }
 
-    /// The system matrix of [d1/ε, d2] with a constant first column of g_s, 1/s.
-    fn matrix(&self, column: &[f64; 2]) -> Matrix4<f64> {
-        let mut m = Matrix4::zeros();
-        for i in 0..2 {
-            m[(i, i)] = -self.alpha1[i] / self.epsilon[i];
-            m[(i, 2 + i)] = 1.0 / self.epsilon[i];
-            m[(2 + i, i)] = -self.alpha2[i] / self.epsilon[i];
-            m[(2 + i, 2)] = -column[i];
-        }
-        m
+    /// The system matrix of [d1/ε, d2], for the distance first, with a constant first column of g_s, 1/s.
+    fn matrix(&self, column: &[f64; 2]) -> Cascade {
+        let channel = |i: usize, own: f64| {
+            let [alpha1, alpha2] = [self.alpha1[i], self.alpha2[i]].map(|alpha| alpha / self.epsilon[i]);
+            Matrix2::new(-alpha1, 1.0 / self.epsilon[i], -alpha2, -own)
+        };
+        let coupling = Matrix2::new(0.0, 0.0, 0.0, -column[1]);
+        Cascade { first: channel(0, column[0]), coupling, second: channel(1, 0.0) }
     }
 
     /// Coefficients q_k of the polynomial that solves the system: (k + 1) q_(k+1)/h = M q_k + b_k, from the top down.
@@ -200,23 +201,18 @@ impl Observer {
     ) -> [Vector4<f64>; DEGREE + 1] {
         let mut q = [Vector4::zeros(); DEGREE + 1];
         let mut above = Vector4::zeros();
+        // M⁻¹ in closed form.
+        let (e, a1, a2) = (&self.epsilon, &self.alpha1, &self.alpha2);
+        let inverse = [e[0] / (a2[0] + column[0] * e[0] * a1[0]), e[1] / a2[1]];
         for k in (0..=DEGREE).rev() {
-            let mut rhs = above;
-            rhs[2] -= stretch.forcing[0][k];
-            rhs[3] -= stretch.forcing[1][k];
-            q[k] = self.solve_matrix(column, &rhs);
+            let rhs = above - Vector4::new(0.0, 0.0, stretch.forcing[0][k], stretch.forcing[1][k]);
+            let d1 = -(rhs[2] + column[0] * e[0] * rhs[0]) * inverse[0];
+            let d2 = e[0] * rhs[0] + a1[0] * d1;
+            let p1 = -(rhs[3] + column[1] * d2) * inverse[1];
+            q[k] = Vector4::new(d1, p1, d2, e[1] * rhs[1] + a1[1] * p1);
             above = q[k] * (k as f64 / stretch.duration);
         }
         q
-    }
-
-    /// M⁻¹ rhs in closed form.
-    fn solve_matrix(&self, column: &[f64; 2], rhs: &Vector4<f64>) -> Vector4<f64> {
-        let (e, a1, a2) = (&self.epsilon, &self.alpha1, &self.alpha2);
-        let d1 = -(rhs[2] + column[0] * e[0] * rhs[0]) / (a2[0] / e[0] + column[0] * a1[0]);
-        let d2 = e[0] * rhs[0] + a1[0] * d1;
-        let p1 = -(rhs[3] + column[1] * d2) * e[1] / a2[1];
-        Vector4::new(d1, p1, d2, e[1] * rhs[1] + a1[1] * p1)
     }
 }
 
@@ -226,6 +222,16 @@ const STIFF: f64 = 30.0;
 const SERIES_REACH: f64 = 4.0;
 /// At reach 4 the last of these is below 1e-19 of the first.
 const SERIES_TERMS: usize = 40;
+/// 1, 1/2, 1/3, …
+const INVERSES: [f64; SERIES_TERMS] = {
+    let mut inverses = [0.0; SERIES_TERMS];
+    let mut k = 0;
+    while k < SERIES_TERMS {
+        inverses[k] = 1.0 / (k + 1) as f64;
+        k += 1;
+    }
+    inverses
+};
 
 #[cfg(test)]
 mod tests {

@@ -5,36 +5,34 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use vocabulary::{MotionInput, Relative, math};
 
-/// A relative position ready for the equations: sines and cosines taken, distance kept off zero.
+/// The line between a leader and its follower as the follower sees it, ready for the equations: what the follower's own motion
+/// does does not depend on where the leader heads.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Geometry {
+pub struct LineOfSight {
     /// ℓ, m, at least the minimum it was made with.
     pub distance: f64,
-    /// sin ψ.
-    pub sin_bearing: f64,
-    /// cos ψ.
-    pub cos_bearing: f64,
     /// sin γ.
     pub sin_view: f64,
     /// cos γ.
     pub cos_view: f64,
 }
 
-impl Geometry {
-    /// The geometry of `relative`, its distance at least `distance_min` m (ℓ_min) wherever it divides.
-    pub fn new(relative: &Relative, distance_min: f64) -> Self {
-        let (sin_bearing, cos_bearing) = math::sin_cos(relative.bearing);
-        let (sin_view, cos_view) = math::sin_cos(relative.view_angle);
-        Self { distance: relative.distance.max(distance_min), sin_bearing, cos_bearing, sin_view, cos_view }
-    }
+/// A relative position ready for the equations: sines and cosines taken, distance kept off zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Geometry {
+    /// The line between the two.
+    pub line: LineOfSight,
+    /// sin ψ.
+    pub sin_bearing: f64,
+    /// cos ψ.
+    pub cos_bearing: f64,
+}
 
-    /// d[ℓ, ψ]/dt in [m/s, rad/s] from the speeds of follower and leader and the leader's turn rate (eqs 6-7).
-    pub fn rates(&self, follower_speed: f64, leader_speed: f64, leader_turn_rate: f64) -> Vector2<f64> {
-        Vector2::new(
-            follower_speed * self.cos_view - leader_speed * self.cos_bearing,
-            (leader_speed * self.sin_bearing - follower_speed * self.sin_view) / self.distance
-                - leader_turn_rate,
-        )
+impl LineOfSight {
+    /// That of `relative`, its distance at least `distance_min` m (ℓ_min) wherever it divides.
+    pub fn new(relative: &Relative, distance_min: f64) -> Self {
+        let (sin_view, cos_view) = math::sin_cos(relative.view_angle);
+        Self { distance: relative.distance.max(distance_min), sin_view, cos_view }
     }
 
     /// g, the 2×2 input matrix (eq 9); det g = v_j/ℓ.
@@ -62,13 +60,30 @@ impl Geometry {
         let turn = follower_speed / self.distance;
         Vector2::new(turn * self.cos_view, -2.0 * turn * self.sin_view / self.distance)
     }
+}
+
+impl Geometry {
+    /// The geometry of `relative`, its distance at least `distance_min` m (ℓ_min) wherever it divides.
+    pub fn new(relative: &Relative, distance_min: f64) -> Self {
+        let (sin_bearing, cos_bearing) = math::sin_cos(relative.bearing);
+        Self { line: LineOfSight::new(relative, distance_min), sin_bearing, cos_bearing }
+    }
+
+    /// d[ℓ, ψ]/dt in [m/s, rad/s] from the speeds of follower and leader and the leader's turn rate (eqs 6-7).
+    pub fn rates(&self, follower_speed: f64, leader_speed: f64, leader_turn_rate: f64) -> Vector2<f64> {
+        let LineOfSight { distance, sin_view, cos_view } = self.line;
+        Vector2::new(
+            follower_speed * cos_view - leader_speed * self.cos_bearing,
+            (leader_speed * self.sin_bearing - follower_speed * sin_view) / distance - leader_turn_rate,
+        )
+    }
 
     /// g_v, the 2×5 matrix that multiplies the leader's motion (eq 12).
     ///
     /// 2 cos θ_ij − cos γ cos ψ is written without headings, since θ_ij = θ_i − θ_j = γ − ψ.
     pub fn leader_matrix(&self, follower_speed: f64) -> SMatrix<f64, 2, 5> {
-        let (v, l) = (follower_speed, self.distance);
-        let (sp, cp, sg, cg) = (self.sin_bearing, self.cos_bearing, self.sin_view, self.cos_view);
+        let LineOfSight { distance: l, sin_view: sg, cos_view: cg } = self.line;
+        let (v, sp, cp) = (follower_speed, self.sin_bearing, self.cos_bearing);
         SMatrix::<f64, 2, 5>::new(
             v * (cg * cp + 2.0 * sg * sp) / l,
             cp,
@@ -107,7 +122,7 @@ mod tests {
 
     /// g_s, the 2×2 matrix that multiplies ds/dt (eq 11).
     fn rate_matrix(geometry: &Geometry, follower_speed: f64) -> Matrix2<f64> {
-        let column = geometry.rate_column(follower_speed);
+        let column = geometry.line.rate_column(follower_speed);
         Matrix2::new(column.x, 0.0, column.y, 0.0)
     }
 
@@ -119,8 +134,8 @@ mod tests {
         rates: &Vector2<f64>,
         leader: &MotionInput,
     ) -> Vector2<f64> {
-        -(geometry.input_matrix(follower_speed) * command
-            + geometry.drift(follower_speed)
+        -(geometry.line.input_matrix(follower_speed) * command
+            + geometry.line.drift(follower_speed)
             + rate_matrix(geometry, follower_speed) * rates
             + geometry.leader_effect(follower_speed, leader))
     }
@@ -238,8 +253,8 @@ mod tests {
                 ((4.0 * first(h / 2.0) - first(h)) / 3.0, (4.0 * second(h / 2.0) - second(h)) / 3.0);
             let rates = law.rates(&geometry, v, &leader.drive);
             prop_assert!((rates - first).norm() < 1e-7, "{rates} against {first}");
-            let model = -(geometry.input_matrix(v) * command(&follower)
-                + geometry.drift(v)
+            let model = -(geometry.line.input_matrix(v) * command(&follower)
+                + geometry.line.drift(v)
                 + rate_matrix(&geometry, v) * rates
                 + law.leader_effect(&geometry, v, &leader.drive));
             prop_assert!((model - second).norm() < 2e-5 * (1.0 + second.norm()), "{model} against {second}");
@@ -254,7 +269,7 @@ mod tests {
             other.drive.acceleration += a;
             other.drive.turn_rate += w;
             let change = differences(&leader, &other).1 - differences(&leader, &follower).1;
-            let g = Geometry::new(&r, 0.1).input_matrix(follower.drive.speed);
+            let g = LineOfSight::new(&r, 0.1).input_matrix(follower.drive.speed);
             prop_assert!((change + g * Vector2::new(a, w)).norm() < 1e-4, "{change}");
         }
 
@@ -268,7 +283,7 @@ mod tests {
             let v = follower.drive.speed;
             let geometry = Geometry::new(&r, 0.1);
             let (first, second) = differences(&leader, &follower);
-            let model = -geometry.drift(v) - rate_matrix(&geometry, v) * first;
+            let model = -geometry.line.drift(v) - rate_matrix(&geometry, v) * first;
             prop_assert!((model - second).norm() < 2e-5 * (1.0 + second.norm()));
         }
 
@@ -301,7 +316,7 @@ mod tests {
             let r = Relative::between(leader.pose, follower.pose);
             prop_assume!(r.distance > 0.2);
             let v = follower.drive.speed;
-            let g = Geometry::new(&r, 0.1).input_matrix(v);
+            let g = LineOfSight::new(&r, 0.1).input_matrix(v);
             prop_assert!((g.determinant() - v / r.distance).abs() < 1e-12);
         }
 
@@ -312,7 +327,7 @@ mod tests {
             let geometry = Geometry::new(&r, 0.1);
             let v = follower.drive.speed;
             let rhs = Vector2::new(a, b);
-            let back = geometry.input_matrix(v) * geometry.minus_inverse_input(v, &rhs);
+            let back = geometry.line.input_matrix(v) * geometry.line.minus_inverse_input(v, &rhs);
             prop_assert!((back + rhs).norm() < 1e-9);
         }
     }

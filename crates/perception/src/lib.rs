@@ -13,8 +13,8 @@ pub mod proximity;
 pub mod sensors;
 
 use vocabulary::{
-    Edge, EdgeSample, HeadingReference, Observation, Relative, Snapshot, StepInterpolant, Track,
-    nearest_turn, wrap,
+    Edge, EdgeSample, HeadingReference, Motion, Observation, Relative, Snapshot, StepInterpolant,
+    TRACK_NODES, Track, math, wrap,
 };
 
 /// One observation per edge, of the truth.
@@ -37,11 +37,9 @@ pub fn tracks(
     mut visit: impl FnMut(&Track),
 ) {
     let end = interpolant.duration();
-    let mut kinks = [interpolant.saturation_time(edge.leader), interpolant.saturation_time(edge.follower)]
-        .map(|k| k.unwrap_or(end));
-    kinks.sort_by(f64::total_cmp);
+    let [a, b] = [edge.leader, edge.follower].map(|k| interpolant.saturation_time(k).unwrap_or(end));
     let mut from = 0.0;
-    for until in kinks {
+    for until in [a.min(b), a.max(b)] {
         if until - from > SHORTEST && end - until > SHORTEST {
             visit(&track(interpolant, edge, reference, [from, until]));
             from = until;
@@ -50,24 +48,31 @@ pub fn tracks(
     visit(&track(interpolant, edge, reference, [from, end]));
 }
 
-/// The edge as seen at one instant of the last step; the bearing is the turn nearest to `near`. For a follower that holds
-/// it against a path's heading it is the direction of the line in the world, which it knows by its own heading.
+/// The edge as seen at one instant of the last step. For a follower that holds its bearing against a path's heading it is the
+/// direction of the line in the world, which it knows by its own heading.
 pub fn sample(
     interpolant: &(impl StepInterpolant + ?Sized),
     edge: Edge,
     reference: HeadingReference,
     elapsed: f64,
-    near: Option<f64>,
 ) -> EdgeSample {
-    let (leader, follower) =
-        (interpolant.during(edge.leader, elapsed), interpolant.during(edge.follower, elapsed));
+    first_sample(&motions(interpolant, edge, elapsed), reference)
+}
+
+/// Leader and follower at an instant of the last step.
+fn motions(interpolant: &(impl StepInterpolant + ?Sized), edge: Edge, elapsed: f64) -> [Motion; 2] {
+    [edge.leader, edge.follower].map(|robot| interpolant.during(robot, elapsed))
+}
+
+fn first_sample([leader, follower]: &[Motion; 2], reference: HeadingReference) -> EdgeSample {
     let mut relative = Relative::between(leader.pose, follower.pose);
     if reference == HeadingReference::Path {
         relative.bearing = wrap(relative.view_angle + follower.pose.heading);
     }
-    if let Some(near) = near {
-        relative.bearing = nearest_turn(relative.bearing, near);
-    }
+    sample_of(relative, follower)
+}
+
+fn sample_of(relative: Relative, follower: &Motion) -> EdgeSample {
     EdgeSample {
         relative,
         own_speed: follower.speed,
@@ -83,23 +88,56 @@ fn track(
     [from, until]: [f64; 2],
 ) -> Track {
     let duration = until - from;
+    let mut samples = [EdgeSample::default(); TRACK_NODES];
+    let mut before = motions(interpolant, edge, from);
+    samples[0] = first_sample(&before, reference);
+    for (k, node) in Track::NODES.into_iter().enumerate().skip(1) {
+        let now = motions(interpolant, edge, from + node * duration);
+        samples[k] = sample_of(turned(&samples[k - 1].relative, [&before, &now], reference), &now[1]);
+        before = now;
+    }
     // A node on a kink belongs to the stretch it is sampled for: its acceleration is that of the middle.
     let middle = interpolant.during(edge.follower, from + duration / 2.0);
-    let mut near = None;
-    let samples = Track::NODES.map(|node| {
-        let mut sample = sample(interpolant, edge, reference, from + node * duration, near);
+    for sample in &mut samples {
         sample.acceleration = middle.acceleration;
-        near = Some(sample.relative.bearing);
-        sample
-    });
+    }
     Track { duration, samples }
+}
+
+/// Where a follower is relative to its leader a little later than at `relative`: by how far the line between them and both robots
+/// have turned, so that the bearing is continuous.
+fn turned(relative: &Relative, [before, now]: [&[Motion; 2]; 2], reference: HeadingReference) -> Relative {
+    let line =
+        |[leader, follower]: &[Motion; 2]| [leader.pose.x - follower.pose.x, leader.pose.y - follower.pose.y];
+    let ([x, y], turn) = (line(now), angle(line(before), line(now)));
+    let own = |robot: usize| wrap(now[robot].pose.heading - before[robot].pose.heading);
+    let frame = if reference == HeadingReference::Path { 0.0 } else { own(0) };
+    Relative {
+        distance: (x * x + y * y).sqrt(),
+        bearing: relative.bearing + turn - frame,
+        view_angle: wrap(relative.view_angle + turn - own(1)),
+    }
+}
+
+/// The angle from one vector to another, rad; between neighbouring samples it is small nearly always.
+fn angle(from: [f64; 2], to: [f64; 2]) -> f64 {
+    let (across, along) = (from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
+    let slope = across / along;
+    if along > 0.0 && slope.abs() < 1.0 / 64.0 {
+        // The power series of the arc tangent; the next term is below 1e-19 of the first.
+        let square = slope * slope;
+        let rest = 1.0 / 3.0 - square * (1.0 / 5.0 - square * (1.0 / 7.0 - square * (1.0 / 9.0)));
+        slope - slope * (square * rest)
+    } else {
+        math::atan2(across, along)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use vocabulary::math;
-    use vocabulary::{Motion, Pose, RobotState};
+    use proptest::prelude::*;
+    use vocabulary::{Pose, RobotState, nearest_turn};
 
     /// A leader at rest at the origin; a follower on a circle around it, whose acceleration jumps at 4 ms.
     struct Circling;
@@ -144,6 +182,36 @@ mod tests {
                 assert!((pair[1].relative.bearing - pair[0].relative.bearing).abs() < 0.01);
             }
         });
+    }
+
+    /// What is counted from one sample to the next is what each sample says by itself, whole turns aside.
+    #[test]
+    fn samples_of_a_track_are_those_of_their_instants() {
+        for reference in [HeadingReference::Leader, HeadingReference::Path] {
+            let mut from = 0.0_f64;
+            tracks(&Circling, EDGE, reference, |track| {
+                for (node, seen) in Track::NODES.iter().zip(&track.samples) {
+                    let alone = sample(&Circling, EDGE, reference, from + node * track.duration);
+                    let (ours, theirs) = (seen.relative, alone.relative);
+                    assert!((ours.distance - theirs.distance).abs() < 1e-15);
+                    assert!((ours.bearing - nearest_turn(theirs.bearing, ours.bearing)).abs() < 4e-15);
+                    assert!((ours.view_angle - theirs.view_angle).abs() < 4e-15, "{ours:?} {theirs:?}");
+                    assert_eq!((seen.own_speed, seen.turn_rate), (alone.own_speed, alone.turn_rate));
+                }
+                from += track.duration;
+            });
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn the_angle_between_vectors_is_their_arc_tangent(r in 0.1..50.0_f64, s in 0.1..50.0_f64, a in -3.1..3.1_f64, small in -0.03..0.03_f64, any in -3.1..3.1_f64) {
+            for turn in [small, any] {
+                let (from, to) = (math::sin_cos(a), math::sin_cos(a + turn));
+                let found = angle([r * from.1, r * from.0], [s * to.1, s * to.0]);
+                prop_assert!((found - turn).abs() < 2e-15, "{found} {turn}");
+            }
+        }
     }
 
     #[test]

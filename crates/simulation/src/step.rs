@@ -216,8 +216,8 @@ fn observe(world: &dyn World, edge: Edge, law: &EdgeLaw, period: Option<f64>, es
         perception::tracks(world, edge, reference, |track| *estimate = law.observer.follow(estimate, track));
         return;
     };
-    let mut before = perception::sample(world, edge, reference, 0.0, None);
-    let after = perception::sample(world, edge, reference, period, None);
+    let mut before = perception::sample(world, edge, reference, 0.0);
+    let after = perception::sample(world, edge, reference, period);
     before.acceleration = (after.own_speed - before.own_speed) / period;
     *estimate = law.observer.follow_samples(estimate, &before, &after.relative, period);
 }

@@ -3,6 +3,7 @@
 //! Gauss-Legendre quadrature; its error at 1 m/s and 10 rad/s is below 1e-12 m per second. Where the turn rate is large or
 //! changes fast, stretches are halved, so that a sharp bend of a path is driven as it is.
 
+use crate::arc;
 use vocabulary::{Motion, MotionInput, Pose, Trajectory, math, wrap};
 
 /// Nodes and weights of the three-point Gauss-Legendre rule on 0 to 1.
@@ -17,17 +18,22 @@ const HALVINGS: u32 = 10;
 
 /// The motion of what follows `lead` from `pose` at `time`, `elapsed` s later.
 pub(crate) fn prescribed(lead: &dyn Trajectory, pose: Pose, time: f64, elapsed: f64) -> Motion {
+    let motion = |pose: Pose, drive: MotionInput| {
+        let MotionInput { speed, acceleration, turn_rate, .. } = drive;
+        Motion { pose, speed, acceleration, turn_rate }
+    };
+    // Most leads ask for the same at all times: they drive on a circle.
+    if let Some(drive) = lead.steady() {
+        return arc::after(&motion(pose, drive), elapsed);
+    }
     let stretches = (elapsed / GAUSS_REACH).ceil().max(1.0);
     let h = elapsed / stretches;
     let mut pose = pose;
-    // Most leads ask for the same at all times, and are asked a dozen times in every stretch.
-    let steady = lead.steady();
-    let at = |time: f64| steady.unwrap_or_else(|| lead.at(time));
+    let at = |time: f64| lead.at(time);
     for k in 0..stretches as usize {
         pose = stretch(&at, pose, time + k as f64 * h, h, HALVINGS);
     }
-    let drive = at(time + elapsed);
-    Motion { pose, speed: drive.speed, acceleration: drive.acceleration, turn_rate: drive.turn_rate }
+    motion(pose, at(time + elapsed))
 }
 
 /// One stretch of `h` s.

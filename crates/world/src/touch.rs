@@ -26,6 +26,8 @@ pub(crate) struct Touches {
     contacts: Vec<Contact>,
     /// Where in `contacts` the open contact of two things is.
     open: BTreeMap<[EntityId; 2], usize>,
+    /// The smallest x that each robot may reach, in order.
+    order: Vec<(f64, usize)>,
 }
 
 impl Touches {
@@ -78,17 +80,27 @@ impl Touches {
     pub(crate) fn find<'b>(&mut self, snapshot: &Snapshot, body: impl Fn(usize) -> &'b Body) {
         self.forget_ended();
         let outline = |index: usize| BodyOutline::of(&snapshot.robots[index].motion.pose, body(index));
-        let outlines: Vec<BodyOutline> = (0..snapshot.robots.len()).map(outline).collect();
-        let present = |index: &usize| snapshot.robots[*index].is_present();
-        let mut order: Vec<usize> = (0..outlines.len()).filter(present).collect();
-        order.sort_by(|&a, &b| outlines[a].left().total_cmp(&outlines[b].left()));
+        // No point of a body is farther from its pose.
+        let reach = |index: usize| {
+            let Body { length, width, wheelbase, .. } = body(index);
+            0.5 * (length + width + wheelbase)
+        };
+        let robots = snapshot.robots.iter().enumerate().filter(|(_, robot)| robot.is_present());
+        self.order.clear();
+        self.order.extend(robots.map(|(index, robot)| (robot.motion.pose.x - reach(index), index)));
+        self.order.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         let mut found = Vec::new();
-        for (rank, &i) in order.iter().enumerate() {
-            for &j in &order[rank + 1..] {
-                if outlines[j].left() > outlines[i].right() {
+        for (rank, &(left, i)) in self.order.iter().enumerate() {
+            let (right, y) = (left + 2.0 * reach(i), snapshot.robots[i].motion.pose.y);
+            for &(left, j) in &self.order[rank + 1..] {
+                if left > right {
                     break;
                 }
-                if let Some((place, normal)) = outlines[i.min(j)].overlap(&outlines[i.max(j)]) {
+                // Outlines take a sine and a cosine: few are worth it.
+                if (snapshot.robots[j].motion.pose.y - y).abs() > reach(i) + reach(j) {
+                    continue;
+                }
+                if let Some((place, normal)) = outline(i.min(j)).overlap(&outline(i.max(j))) {
                     let things = [EntityId::Robot(i.min(j)), EntityId::Robot(i.max(j))];
                     found.push(BodyContact { things, place, normal, impulse: 0.0 });
                 }
@@ -124,16 +136,8 @@ impl BodyOutline {
             axes: [[cos, sin], [-sin, cos]],
             half,
             height: body.height,
-            reach: math::hypot(half[0], half[1]),
+            reach: body.radius(),
         }
-    }
-
-    fn left(&self) -> f64 {
-        self.middle[0] - self.reach
-    }
-
-    fn right(&self) -> f64 {
-        self.middle[0] + self.reach
     }
 
     /// How far it reaches from its middle along a unit vector.

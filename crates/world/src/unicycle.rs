@@ -46,6 +46,7 @@ struct UnicycleStep {
     cos: f64,
     /// When the speed meets its bound, and the motion from there.
     saturation_time: Option<(f64, Motion)>,
+    end: Motion,
     /// Where a lead robot was found at an elapsed time, s: every follower asks for the same times, and an integral costs
     /// more than a search.
     found: RefCell<Vec<(f64, Motion)>>,
@@ -88,6 +89,7 @@ impl Unicycles {
         }
         for index in 0..self.robots.len() {
             let end = self.motion_of(index, duration);
+            self.steps[index].end = end;
             let travelled = self.steps[index].travelled(duration);
             roll(&mut self.snapshot.robots[index], &self.robots[index].body, travelled, &end);
         }
@@ -173,7 +175,15 @@ impl StepInterpolant for Unicycles {
     }
 
     fn during(&self, robot: usize, elapsed: f64) -> Motion {
-        self.motion_of(robot, elapsed)
+        // Observers ask for both ends of every step.
+        let step = &self.steps[robot];
+        if elapsed == self.duration {
+            step.end
+        } else if elapsed == 0.0 && self.robots[robot].lead.is_none() {
+            step.start
+        } else {
+            self.motion_of(robot, elapsed)
+        }
     }
 
     fn saturation_time(&self, robot: usize) -> Option<f64> {

@@ -208,7 +208,7 @@ impl Witness {
             v: 0.5 * filtered.norm_squared() + p,
             observer_error: eta.iter().map(|x| x * x).sum::<f64>().sqrt(),
             w: self.layer.map_or(0.0, |layer| layer.energy(&eta)),
-            rate_gain: geometry.rate_column(now.follower_speed).norm(),
+            rate_gain: geometry.line.rate_column(now.follower_speed).norm(),
             limited: now.limited,
             at_speed_bound: now.at_speed_bound,
             stands: now.stands,

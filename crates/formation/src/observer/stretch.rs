@@ -1,6 +1,6 @@
 //! What the observer meets over a stretch of time, as polynomials.
 
-use crate::relative::Geometry;
+use crate::relative::LineOfSight;
 use nalgebra::{SMatrix, Vector2};
 use std::sync::LazyLock;
 use vocabulary::{EdgeSample, Relative, TRACK_NODES, Track, math, nearest_turn};
@@ -27,22 +27,22 @@ impl PolynomialPiece {
         let origin = track.samples[0].relative;
         let mut values = [[0.0; TRACK_NODES]; 6];
         for (k, sample) in track.samples.iter().enumerate() {
-            let geometry = Geometry::new(&sample.relative, distance_min);
-            let (column, input) = (geometry.rate_column(sample.own_speed), input_effect(&geometry, sample));
+            let line = LineOfSight::new(&sample.relative, distance_min);
+            let (column, input) = (line.rate_column(sample.own_speed), input_effect(&line, sample));
             values[0][k] = sample.relative.distance - origin.distance;
             values[1][k] = sample.relative.bearing - origin.bearing;
             (values[2][k], values[3][k]) = (column.x, column.y);
             (values[4][k], values[5][k]) = (input.x, input.y);
         }
-        let [mut distance, mut bearing, column_d, column_b, input_d, input_b] = values.map(|v| fit(&v));
+        let [mut distance, mut bearing, column_d, column_b, input_d, input_b] = fit(&values);
         // Values were taken relative to the first to keep digits in the derivatives.
         distance[0] += origin.distance;
         bearing[0] += origin.bearing;
         let (rate_column, measurement) = ([column_d, column_b], [distance, bearing]);
-        let forcing = [0, 1].map(|i| {
-            let input = if i == 0 { &input_d } else { &input_b };
-            residue(input, &rate_column[i], &distance, &measurement[i], h)
-        });
+        let forcing = [
+            residue(&input_d, &column_d, &distance, &distance, h),
+            residue(&input_b, &column_b, &distance, &bearing, h),
+        ];
         Self { duration: h, measurement, rate_column, forcing }
     }
 
@@ -52,8 +52,8 @@ impl PolynomialPiece {
         duration: f64,
         distance_min: f64,
     ) -> Self {
-        let geometry = Geometry::new(&before.relative, distance_min);
-        let (column, input) = (geometry.rate_column(before.own_speed), input_effect(&geometry, before));
+        let line = LineOfSight::new(&before.relative, distance_min);
+        let (column, input) = (line.rate_column(before.own_speed), input_effect(&line, before));
         let start = [before.relative.distance, before.relative.bearing];
         let end = [after.distance, nearest_turn(after.bearing, start[1])];
         let line = [0, 1].map(|i| polynomial(&[start[i], end[i] - start[i]]));
@@ -76,22 +76,22 @@ impl PolynomialPiece {
 }
 
 /// −g ϖ − g0, [m/s², rad/s²]: what the follower's own input does to d²s/dt².
-pub(crate) fn input_effect(geometry: &Geometry, sample: &EdgeSample) -> Vector2<f64> {
+pub(crate) fn input_effect(line: &LineOfSight, sample: &EdgeSample) -> Vector2<f64> {
     let command = Vector2::new(sample.acceleration, sample.turn_rate);
-    -(geometry.input_matrix(sample.own_speed) * command + geometry.drift(sample.own_speed))
+    -(line.input_matrix(sample.own_speed) * command + line.drift(sample.own_speed))
 }
 
 /// w = input − column · dℓ/dt − d²p/dt², as a polynomial cut at the common degree.
 fn residue(input: &Poly, column: &Poly, distance: &Poly, measurement: &Poly, h: f64) -> Poly {
-    let mut out = *input;
+    let (mut out, rate) = (*input, 1.0 / h);
     for k in 0..DEGREE {
-        let slope = (k + 1) as f64 * distance[k + 1] / h;
+        let slope = (k + 1) as f64 * distance[k + 1] * rate;
         for j in 0..=DEGREE - k {
             out[k + j] -= column[j] * slope;
         }
     }
     for k in 0..=DEGREE - 2 {
-        out[k] -= ((k + 1) * (k + 2)) as f64 * measurement[k + 2] / (h * h);
+        out[k] -= ((k + 1) * (k + 2)) as f64 * measurement[k + 2] * (rate * rate);
     }
     out
 }
@@ -104,7 +104,7 @@ fn polynomial(low: &[f64]) -> Poly {
 
 /// Mean over the stretch.
 pub(super) fn mean(p: &Poly) -> f64 {
-    p.iter().enumerate().map(|(k, c)| c / (k + 1) as f64).sum()
+    p.iter().zip(super::INVERSES).map(|(c, inverse)| c * inverse).sum()
 }
 
 /// p(from + share · τ) as a polynomial in τ: Horner's scheme, repeated.
@@ -123,15 +123,23 @@ pub(super) fn shifted(p: &Poly, from: f64, share: f64) -> Poly {
     out
 }
 
-/// The polynomial through values at the nodes of a track.
-fn fit(values: &[f64; TRACK_NODES]) -> Poly {
-    let v = *COEFFICIENTS_FROM_NODES * SMatrix::<f64, TRACK_NODES, 1>::from(*values);
-    v.into()
+/// The polynomials through values at the nodes of a track.
+fn fit<const N: usize>(values: &[[f64; TRACK_NODES]; N]) -> [Poly; N] {
+    let (bases, mut out) = (&*BASES, [[0.0; DEGREE + 1]; N]);
+    for (polynomial, values) in out.iter_mut().zip(values) {
+        for (basis, value) in bases.iter().zip(values) {
+            for (c, share) in polynomial.iter_mut().zip(basis) {
+                *c += share * value;
+            }
+        }
+    }
+    out
 }
 
-static COEFFICIENTS_FROM_NODES: LazyLock<SMatrix<f64, TRACK_NODES, TRACK_NODES>> = LazyLock::new(|| {
+/// For each node of a track the polynomial that is 1 there and 0 at all others.
+static BASES: LazyLock<[Poly; TRACK_NODES]> = LazyLock::new(|| {
     let vandermonde = SMatrix::<f64, TRACK_NODES, TRACK_NODES>::from_fn(|row, column| {
         math::powi(Track::NODES[row], column as i32)
     });
-    vandermonde.try_inverse().unwrap_or_else(SMatrix::identity)
+    vandermonde.try_inverse().unwrap_or_else(SMatrix::identity).into()
 });

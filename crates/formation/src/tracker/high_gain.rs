@@ -3,7 +3,7 @@
 
 use super::{Own, TrackerParameters, innovation};
 use crate::observer::{Estimate, Observer, input_effect};
-use crate::relative::Geometry;
+use crate::relative::{Geometry, LineOfSight};
 use vocabulary::{EdgeSample, Measurement, MotionInput, Relative, math};
 
 /// ŝ1 and ŝ2, and the view angle, which no law controls but all of them use.
@@ -171,7 +171,7 @@ fn slope(x: &State, distance_min: f64, own: Own, coasting: bool) -> State {
         acceleration: own.acceleration,
         turn_rate: own.turn_rate,
     };
-    let mut second = input_effect(&geometry, &sample) - geometry.rate_column(own.speed) * dd;
+    let mut second = input_effect(&geometry.line, &sample) - geometry.line.rate_column(own.speed) * dd;
     if coasting {
         second -= geometry.leader_effect(own.speed, &leader(&geometry, x, own));
     }
@@ -181,8 +181,9 @@ fn slope(x: &State, distance_min: f64, own: Own, coasting: bool) -> State {
 /// What the leader does by the rates that are believed: eqs 6-7 solved for its speed, along its heading, and its turn
 /// rate.
 fn leader(geometry: &Geometry, &[_, _, dd, db, _, line_rate]: &State, own: Own) -> MotionInput {
-    let along = own.speed * geometry.cos_view - dd;
-    let across = line_rate * geometry.distance + own.speed * geometry.sin_view;
+    let LineOfSight { distance, sin_view, cos_view } = geometry.line;
+    let along = own.speed * cos_view - dd;
+    let across = line_rate * distance + own.speed * sin_view;
     MotionInput {
         speed: geometry.cos_bearing * along + geometry.sin_bearing * across,
         turn_rate: line_rate - db,
