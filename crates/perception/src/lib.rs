@@ -97,9 +97,9 @@ fn track(
         before = now;
     }
     // A node on a kink belongs to the stretch it is sampled for: its acceleration is that of the middle.
-    let middle = interpolant.during(edge.follower, from + duration / 2.0);
+    let middle = f64::midpoint(samples[2].acceleration, samples[3].acceleration);
     for sample in &mut samples {
-        sample.acceleration = middle.acceleration;
+        sample.acceleration = middle;
     }
     Track { duration, samples }
 }
