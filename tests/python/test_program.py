@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -55,3 +56,12 @@ def test_an_interrupt_leaves_a_readable_run(tmp_path):
         _, told = process.communicate(timeout=60)
     assert process.returncode == 130 and "Traceback" not in told, told
     assert json.loads((tmp_path / "run/manifest.json").read_text())["status"] == "interrupted"
+
+
+def test_the_table_of_reliability_has_a_row_for_each_study(tmp_path):
+    script = Path(__file__).parents[2] / "scripts" / "reliability"
+    command = [sys.executable, script, os.environ["ECHELON"], "1", tmp_path / "studies"]
+    done = subprocess.run(command, check=True, text=True, capture_output=True)
+    rows = [line for line in done.stdout.splitlines() if line.startswith("| ") and "%" in line]
+    assert len(rows) == 16 == len(list((tmp_path / "studies").iterdir()))
+    assert all(row.count("(20.65 to 100.00 %)") + row.count("(0.00 to 79.35 %)") == 2 for row in rows)

@@ -285,7 +285,7 @@ impl PyStudy {
             None => None,
         };
         let rows = self.rows(py, range, threads, progress)?;
-        let mut table = RowTable::new(self.experiment.study());
+        let mut table = RowTable::new(self.experiment.design());
         for row in &rows {
             table.push(row);
         }

@@ -44,6 +44,7 @@ mod study;
 mod table_file;
 mod text;
 mod types;
+mod units;
 mod unused;
 mod vehicle;
 
@@ -56,7 +57,7 @@ pub use overrides::{Override, OverrideError};
 pub use shipped::{SHIPPED, Shipped, nearest_shipped, scene_name, shipped};
 pub use study::{
     Distribution, FollowerScatter, MOST_RUNS, Sampling, Study, StudyFault, StudyParameter, ValueScale,
-    Values, ValuesError, value_text,
+    Values, ValuesError, WrittenNumber, value_text,
 };
 pub use text::node::composed;
 pub use types::{
@@ -66,3 +67,4 @@ pub use types::{
     Scene, Sensing, SensingKind, Shot, SpeedProfile, SwitchingKind, Time, Travel, Trigger, Vehicle,
     VehicleKind, Views, Vision, When, WrittenLaw,
 };
+pub use units::unit;

@@ -5,7 +5,7 @@ use crate::interval::wilson;
 use crate::measure::MEASURES;
 use crate::summary::{CellSummary, StudySummary};
 use figures::{Axis, Figure, HeatMap, MapAxis, MapLine, Panel, Scale, Series};
-use scene::{ValueScale, Values};
+use scene::{ValueScale, Values, WrittenNumber};
 
 /// A figure of a study.
 #[derive(Debug, Clone, PartialEq)]
@@ -108,10 +108,11 @@ impl ChartSide {
         if !(2..=MOST_DRAWN).contains(&(texts.len() as u64)) {
             return None;
         }
-        let numbers: Option<Vec<f64>> = texts.iter().map(|text| number(text)).collect();
+        let numbers: Option<Vec<f64>> =
+            texts.iter().map(|text| Some(WrittenNumber::of(text)?.number)).collect();
         let rising = |numbers: &Vec<f64>| numbers.windows(2).all(|pair| pair[0] < pair[1]);
         let degrees = texts.iter().any(|text| text.contains("deg"));
-        let label = if degrees { format!("{} (°)", parameter.key) } else { parameter.key.clone() };
+        let label = key_label(&parameter.key, degrees);
         let scale = if scale == ValueScale::Logarithmic { Scale::Log } else { Scale::Linear };
         let axis = match numbers.filter(rising) {
             Some(values) => MapAxis { label, scale, values, names: vec![] },
@@ -123,6 +124,16 @@ impl ChartSide {
             },
         };
         Some(Self { key: parameter.key.clone(), axis })
+    }
+}
+
+/// A key with its unit, as on an axis; `degrees` says that its values are angles in degrees.
+pub fn key_label(key: &str, degrees: bool) -> String {
+    match scene::unit(key) {
+        _ if degrees => format!("{key} (°)"),
+        // Of a pair.
+        Some(unit) => format!("{key} ({})", unit.replace(" or ", ", ")),
+        None => key.to_owned(),
     }
 }
 
@@ -172,13 +183,6 @@ pub fn edge_line(design: &Design, pairs: &[[u64; 2]]) -> Option<MapLine> {
         ticks.push([crossing, towards]);
     }
     Some(MapLine { points, ticks, ..MapLine::default() })
-}
-
-/// A value of a key as a number, in degrees if it is one.
-fn number(text: &str) -> Option<f64> {
-    let text = text.trim().trim_matches('"').trim();
-    let text = text.strip_suffix("deg").or_else(|| text.strip_suffix('°')).unwrap_or(text);
-    text.trim_end().parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 /// Cells summed over all other keys: what is left is a value for each place along some axes.

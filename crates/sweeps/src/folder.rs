@@ -40,6 +40,14 @@ pub struct StudyManifest {
     pub complete: bool,
 }
 
+impl StudyManifest {
+    /// The program, as exactly as it is known.
+    fn version(&self) -> String {
+        let Self { program, commit, .. } = self;
+        commit.as_ref().map_or(program.clone(), |commit| format!("{program} ({commit})"))
+    }
+}
+
 /// Where the rows of a study go.
 #[derive(Debug)]
 pub struct StudyFolder {
@@ -93,7 +101,7 @@ impl StudyFolder {
             manifest,
             done: IndexSet::default(),
             rows: BTreeMap::new(),
-            table: RowTable::new(experiment.study()),
+            table: RowTable::new(experiment.design()),
             next_part: 0,
             _claim: claim,
         };
@@ -148,11 +156,12 @@ impl StudyFolder {
 
     fn fits(&self, earlier: &StudyManifest) -> Result<(), Error> {
         let folder = self.folder.display();
-        if earlier.program != self.manifest.program {
+        if earlier.version() != self.manifest.version() {
             return Err(Error::Usage(format!(
                 "{folder} holds a study by {}, and this is {}: rows of two versions do not mix; choose another folder, or give \
                  --force to begin anew",
-                earlier.program, self.manifest.program
+                earlier.version(),
+                self.manifest.version()
             )));
         }
         if earlier.fingerprint != self.manifest.fingerprint {
@@ -282,7 +291,7 @@ pub fn write_rows<'a>(
 /// # Errors
 /// [`Error`] where they cannot be encoded.
 pub fn part_bytes(experiment: &Experiment, rows: &[RunRow]) -> Result<Vec<u8>, Error> {
-    let mut table = RowTable::new(experiment.study());
+    let mut table = RowTable::new(experiment.design());
     for row in rows {
         table.push(row);
     }
@@ -296,7 +305,7 @@ pub fn part_bytes(experiment: &Experiment, rows: &[RunRow]) -> Result<Vec<u8>, E
 pub fn joined(experiment: &Experiment, parts: &[Vec<u8>]) -> Result<RowTable, Error> {
     let mut rows = BTreeMap::new();
     for part in parts {
-        let mut table = RowTable::new(experiment.study());
+        let mut table = RowTable::new(experiment.design());
         let mark = append_bytes(part.clone(), table.columns_mut())?;
         if mark.as_deref() != Some(experiment.fingerprint()) {
             return Err(Error::Usage(format!("a part {OTHERS}")));
@@ -308,7 +317,7 @@ pub fn joined(experiment: &Experiment, parts: &[Vec<u8>]) -> Result<RowTable, Er
             }
         }
     }
-    let mut table = RowTable::new(experiment.study());
+    let mut table = RowTable::new(experiment.design());
     for row in rows.values() {
         table.push(row);
     }
@@ -434,7 +443,7 @@ pub fn for_every_row(
 ) -> Result<(), Error> {
     let mut seen = IndexSet::default();
     for path in row_files(folder)? {
-        let mut table = RowTable::new(experiment.study());
+        let mut table = RowTable::new(experiment.design());
         append_columns(&path, table.columns_mut())?;
         table.rows().filter(|row| seen.insert(row.point.index)).for_each(&mut take);
     }

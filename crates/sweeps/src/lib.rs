@@ -30,7 +30,7 @@ mod summary;
 mod theory;
 
 pub use boundary::BoundarySearch;
-pub use chart::{ChartQuantity, StudyCurve, StudyFigure, charts, curve, edge_line, heat_map};
+pub use chart::{ChartQuantity, StudyCurve, StudyFigure, charts, curve, edge_line, heat_map, key_label};
 pub use design::{Design, DesignAxis, RunPoint};
 pub use error::Error;
 pub use experiment::{CAMERAS, Experiment, GoOn};

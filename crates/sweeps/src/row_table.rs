@@ -1,19 +1,20 @@
 //! Rows of a study as a table, column by column.
 
-use crate::design::RunPoint;
+use crate::design::{Design, RunPoint};
 use crate::measure::MEASURES;
 use crate::row::{RowStatus, RunRow};
 use recording::{Column, NamedColumn};
-use scene::Study;
+use scene::{Study, Values, WrittenNumber};
 use std::borrow::Cow;
+use std::sync::Arc;
 use vocabulary::Word;
 
-/// Rows of a study, column by column.
+/// Rows of a study, column by column. Keys that are varied are numbers where all their values are, angles in rad.
 #[derive(Debug, Clone)]
 pub struct RowTable {
     columns: Vec<NamedColumn>,
-    /// How many of them are the study's keys.
-    keys: usize,
+    /// Says what the key columns of a row are.
+    design: Arc<Design>,
 }
 
 /// A value of a row.
@@ -26,10 +27,10 @@ enum RowValue<'a> {
 
 impl RowTable {
     /// Without rows.
-    pub fn new(study: &Study) -> Self {
-        let keys = study.parameters.len();
-        let point = RunPoint { values: vec![String::new(); keys], ..RunPoint::default() };
-        let mut names = study.parameters.iter().map(|parameter| Cow::Owned(parameter.key.clone()));
+    pub fn new(design: &Design) -> Self {
+        let study = design.study();
+        let point = RunPoint { values: vec![String::new(); study.parameters.len()], ..RunPoint::default() };
+        let mut keys = study.parameters.iter();
         let column = |(name, value): (Option<&'static str>, RowValue<'_>)| {
             let column = match value {
                 RowValue::Whole(_) => Column::Whole(vec![]),
@@ -37,10 +38,15 @@ impl RowTable {
                 RowValue::Number(_) => Column::Number(vec![]),
                 RowValue::Flag(_) => Column::Flag(vec![]),
             };
-            NamedColumn::new(name.map(Cow::Borrowed).or_else(|| names.next()).unwrap_or_default(), column)
+            match name {
+                Some(name) => NamedColumn::new(Cow::Borrowed(name), column),
+                None => keys.next().map_or(NamedColumn::new(Cow::default(), column), |parameter| {
+                    NamedColumn::new(Cow::Owned(parameter.key.clone()), key_column(study, &parameter.values))
+                }),
+            }
         };
         let empty = RunRow::of(point, RowStatus::Complete, String::new());
-        Self { columns: values(&empty).into_iter().map(column).collect(), keys }
+        Self { columns: values(&empty).into_iter().map(column).collect(), design: Arc::new(design.clone()) }
     }
 
     /// Its columns; they may be taken out and put in, all alike.
@@ -72,6 +78,10 @@ impl RowTable {
                     all.push(i64::try_from(value).unwrap_or(i64::MAX));
                 }
                 (Column::Text(all), RowValue::Text(value)) => all.push(value.to_owned()),
+                (Column::Number(all), RowValue::Text(value)) => {
+                    all.push(WrittenNumber::of(value).map_or(f64::NAN, WrittenNumber::si));
+                }
+                (Column::Flag(all), RowValue::Text(value)) => all.push(value == "true"),
                 (Column::Number(all), RowValue::Number(value)) => all.push(value),
                 (Column::Flag(all), RowValue::Flag(value)) => all.push(value),
                 _ => {}
@@ -82,14 +92,15 @@ impl RowTable {
     /// A row; `None` where there is none.
     pub fn row(&self, index: usize) -> Option<RunRow> {
         let mut next = self.columns.iter().map(|named| &named.column);
-        let [run, cell, sample, seed] = [(); 4].map(|()| whole(next.next(), index));
-        let values = (0..self.keys).map(|_| text(next.next(), index)).collect::<Option<Vec<String>>>()?;
+        let run = whole(next.next(), index).filter(|run| *run < self.design.study().runs())?;
+        // Cell, sample, seed and keys follow from the run.
+        let mut next = next.skip(3 + self.design.study().parameters.len());
         let status = text(next.next(), index)?;
         let status =
             RowStatus::WORDS.iter().find(|(word, ..)| *word == status).map(|(_, status, _)| *status)?;
         let Some(Column::Flag(met)) = next.next() else { return None };
         Some(RunRow {
-            point: RunPoint { index: run?, cell: cell?, sample: sample?, seed: seed?, values },
+            point: self.design.point(run),
             status,
             met: *met.get(index)?,
             failed: text(next.next(), index)?,
@@ -105,6 +116,27 @@ impl RowTable {
     /// All rows.
     pub fn rows(&self) -> impl Iterator<Item = RunRow> {
         (0..self.len()).filter_map(|index| self.row(index))
+    }
+}
+
+/// The column of a key that becomes these: numbers, flags or text.
+fn key_column(study: &Study, of: &Values) -> Column {
+    match of {
+        Values::Drawn { .. } => Column::Number(vec![]),
+        Values::Grid { values, .. } | Values::Zipped(values) => {
+            if values.iter().all(|value| WrittenNumber::of(value).is_some()) {
+                Column::Number(vec![])
+            } else if values.iter().all(|value| ["true", "false"].contains(&value.as_str())) {
+                Column::Flag(vec![])
+            } else {
+                Column::Text(vec![])
+            }
+        }
+        // A key that is itself what another is cannot be named.
+        Values::Same(key) => match study.parameters.iter().find(|other| other.key == *key) {
+            Some(other) if !matches!(other.values, Values::Same(_)) => key_column(study, &other.values),
+            _ => Column::Text(vec![]),
+        },
     }
 }
 
@@ -153,13 +185,20 @@ fn values(row: &RunRow) -> Vec<(Option<&'static str>, RowValue<'_>)> {
 mod tests {
     use super::*;
 
+    fn design(keys: &[(&str, &str)]) -> Design {
+        let parameter = |(key, values): &(&str, &str)| scene::StudyParameter {
+            key: (*key).to_owned(),
+            values: values.parse().expect("values"),
+        };
+        let parameters = keys.iter().map(parameter).collect();
+        Design::new(Study { parameters, ..Study::of_scene("circle-three", "t") })
+    }
+
     #[test]
     fn rows_come_out_as_they_went_in() {
-        let parameter =
-            scene::StudyParameter { key: "law.k".to_owned(), values: "1,2".parse().expect("values") };
-        let study = Study { parameters: vec![parameter], ..Study::of_scene("circle-three", "t") };
+        let design = design(&[("law.k", "1,2")]);
         let row = RunRow {
-            point: RunPoint { index: 1, cell: 1, sample: 0, seed: 1 << 62, values: vec!["2".to_owned()] },
+            point: design.point(1),
             status: RowStatus::Stopped,
             met: false,
             failed: "no_contact".to_owned(),
@@ -170,11 +209,39 @@ mod tests {
             digest: "d".to_owned(),
             wall_time: 0.25,
         };
-        let mut table = RowTable::new(&study);
+        let mut table = RowTable::new(&design);
         table.push(&row);
-        assert_eq!((table.len(), table.row(0), table.row(1)), (1, Some(row), None));
+        assert_eq!((table.len(), table.row(0), table.row(1)), (1, Some(row.clone()), None));
         let names: Vec<&str> = table.columns().iter().map(|column| &*column.name).collect();
         assert_eq!(names[..6], ["index", "cell", "sample", "seed", "law.k", "status"]);
         assert!(table.columns().iter().all(|column| column.column.len() == 1));
+        // A run that the study has not.
+        table.push(&RunRow { point: RunPoint { index: 2, ..row.point.clone() }, ..row });
+        assert_eq!(table.row(1), None);
+    }
+
+    #[test]
+    fn keys_are_numbers_and_flags_where_all_their_values_are() {
+        let design = design(&[
+            ("a", "-90 deg,1.5"),
+            ("b", "car,1"),
+            ("c", "true,false"),
+            ("d", "uniform:2..2.5"),
+            ("e", "=a"),
+            ("f", "[1, 2],[3, 4]"),
+        ]);
+        let mut table = RowTable::new(&design);
+        table.push(&RunRow::of(design.point(0), RowStatus::Complete, String::new()));
+        let column = |name: &str| {
+            let found = table.columns().iter().find(|column| column.name == name);
+            &found.expect("a column").column
+        };
+        let quarter = -std::f64::consts::FRAC_PI_2;
+        assert_eq!(column("a"), &Column::Number(vec![quarter]));
+        assert_eq!(column("b"), &Column::Text(vec!["car".to_owned()]));
+        assert_eq!(column("c"), &Column::Flag(vec![true]));
+        assert!(matches!(column("d"), Column::Number(drawn) if (2.0..2.5).contains(&drawn[0])));
+        assert_eq!(column("e"), &Column::Number(vec![quarter]));
+        assert_eq!(column("f"), &Column::Text(vec!["[1, 2]".to_owned()]));
     }
 }

@@ -13,7 +13,9 @@ use crate::print::note;
 use crate::progress::Progress;
 use crate::{Outcome, interrupt};
 use clap::{Args, Subcommand};
-use scene::{FollowerScatter, Override, Sampling, Study, StudyFault, StudyParameter};
+use scene::{
+    Diagnostic, Diagnostics, FollowerScatter, Override, Sampling, Scene, Study, StudyFault, StudyParameter,
+};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -204,13 +206,35 @@ fn refusal(subject: &Path, faults: &[StudyFault]) -> Failure {
     Failure::Usage(told.map_or_else(plain, |errors| errors.to_string()))
 }
 
+/// Why the scene of a study cannot run: what the study's file says of it is told where it stands there.
+fn scene_refusal(study: &Study, subject: &Path, errors: Diagnostics) -> Failure {
+    let scene = Path::new(&study.scene);
+    let wrong = |set: &[Override]| Scene::load(scene, set).err();
+    let fault = if !Study::is_meant(subject) {
+        None
+    } else if let Some(errors) = wrong(&[]) {
+        // What is wrong with a scene that is there stands in the scene.
+        (!scene.exists()).then_some(("scene".to_owned(), errors))
+    } else {
+        (0..study.set.len()).find_map(|k| Some((format!("set.{k}"), wrong(&study.set[..=k])?)))
+    };
+    let located = fault.and_then(|(key, errors)| {
+        let fault = |error: &Diagnostic| StudyFault { key: Some(key.clone()), text: error.message.clone() };
+        Study::located(subject, &errors.all().iter().map(fault).collect::<Vec<_>>())
+    });
+    sweeps::Error::Scene(located.unwrap_or(errors)).into()
+}
+
 /// The experiment of a study that can run.
-fn experiment_of(study: Study, subject: &Path) -> Result<Experiment, Failure> {
+fn experiment_of(study: &Study, subject: &Path) -> Result<Experiment, Failure> {
     let told = |error: sweeps::Error| match error {
         sweeps::Error::Study(faults) => refusal(subject, &faults),
         other => other.into(),
     };
-    let experiment = Experiment::new(study).map_err(told)?;
+    let experiment = Experiment::new(study.clone()).map_err(|error| match error {
+        sweeps::Error::Scene(errors) => scene_refusal(study, subject, errors),
+        other => told(other),
+    })?;
     // What no run could be, all are told at once.
     experiment.check().map_err(told)?;
     Ok(experiment)
@@ -219,7 +243,7 @@ fn experiment_of(study: Study, subject: &Path) -> Result<Experiment, Failure> {
 fn run(args: &StudyArgs) -> Outcome {
     // Required by its declaration.
     let Some(subject) = args.subject.as_deref() else { return Ok(()) };
-    let experiment = experiment_of(study_of(args, subject)?, subject)?;
+    let experiment = experiment_of(&study_of(args, subject)?, subject)?;
     let runs = experiment.study().runs();
     let range = match (&args.range, args.shard) {
         (Some(range), _) => range.clone(),
@@ -339,7 +363,7 @@ fn part(experiment: &Experiment, range: Range<u64>, file: &Path, args: &StudyArg
     }
     made?;
     rows.sort_by_key(|row| row.point.index);
-    sweeps::write_rows(file, &RowTable::new(experiment.study()), rows.iter(), experiment.fingerprint())?;
+    sweeps::write_rows(file, &RowTable::new(experiment.design()), rows.iter(), experiment.fingerprint())?;
     drop(place);
     Ok(())
 }

@@ -13,9 +13,9 @@ const SHORT: &str = "time.duration=1";
 fn rows(folder: &Path) -> Vec<String> {
     let mut columns: Vec<Vec<String>> = vec![];
     let files = sweeps::row_files(folder).expect("files");
-    let study = scene::Study::load(&folder.join("study.toml")).expect("a study");
+    let design = sweeps::Design::new(scene::Study::load(&folder.join("study.toml")).expect("a study"));
     for path in files {
-        let mut table = sweeps::RowTable::new(&study);
+        let mut table = sweeps::RowTable::new(&design);
         recording::append_columns(&path, table.columns_mut()).expect("rows");
         for (k, named) in table.columns().iter().filter(|named| named.name != "wall_time_s").enumerate() {
             columns.resize(columns.len().max(k + 1), vec![]);
@@ -214,8 +214,15 @@ fn what_cannot_be_a_study_is_said_before_anything_runs() {
     .expect("written");
     fs::write(at("other.toml"), "schema = 1\nscene = \"line-three\"\nset = [\"time.duration=1\"]\n")
         .expect("written");
+    let set = "set = [\"time.duration=1\", \"law.q=1\"]";
+    fs::write(at("set.toml"), format!("schema = 1\nscene = \"line-three\"\n{set}\n")).expect("written");
+    fs::write(at("lost.toml"), "schema = 1\nscene = \"lost-scene.toml\"\n").expect("written");
     for (args, wanted) in [
         (vec!["study.toml"], "study.toml:5:1"),
+        (vec!["set.toml"], "set.toml:3:27: unknown key `q`"),
+        (vec!["set.toml", "--set", "law.p=1"], "set.toml:3:27: unknown key `q`"),
+        (vec!["other.toml", "--set", "law.p=1"], "--set:1:5: unknown key `p`"),
+        (vec!["lost.toml"], "lost.toml:2:9: no such file"),
         (vec!["line-three", "--vary", "law.kk=1,2"], "--vary law.kk: `law.kk` cannot be 1"),
         (vec!["line-three", "--vary", "law.k=-1,2"], "cannot be -1"),
         (

@@ -9,7 +9,7 @@ mod read;
 mod values;
 
 pub use faults::StudyFault;
-pub use values::{Distribution, ValueScale, Values, ValuesError, value_text};
+pub use values::{Distribution, ValueScale, Values, ValuesError, WrittenNumber, value_text};
 
 use crate::{Diagnostics, Override};
 use std::path::Path;

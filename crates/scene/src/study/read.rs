@@ -211,7 +211,7 @@ fn study(text: &str, path: &Path, reporter: &mut Reporter) -> Option<Study> {
     Some(study)
 }
 
-/// Faults at the keys they name, of which the text has one at least.
+/// Faults at the keys they name, of which the text has one at least: varied keys, `scene`, and `set.K` for an override by its place.
 pub(super) fn located(text: &str, path: &Path, faults: &[StudyFault]) -> Option<Diagnostics> {
     let mut reporter = Reporter::new(path.parent().unwrap_or(Path::new("")));
     let source = reporter.add_source(path.display().to_string(), text);
@@ -223,8 +223,11 @@ pub(super) fn located(text: &str, path: &Path, faults: &[StudyFault]) -> Option<
     });
     // What is not there is in the table.
     let table = root.get("table").map(|node| node.span);
-    let place = |key: &str| {
-        vary.iter().find(|varied| varied.parameter.key == key).map(|varied| varied.span).or(table)
+    let set = |place: usize| Some(root.get("set")?.as_list()?.get(place)?.span);
+    let place = |key: &str| match key.strip_prefix("set.").and_then(|place| place.parse().ok()) {
+        Some(place) => set(place),
+        None if key == "scene" => Some(root.get("scene")?.span),
+        None => vary.iter().find(|varied| varied.parameter.key == key).map(|varied| varied.span).or(table),
     };
     let places: Vec<Option<Span>> = faults.iter().map(|fault| place(fault.key.as_deref()?)).collect();
     if places.iter().all(Option::is_none) {

@@ -115,23 +115,35 @@ impl fmt::Display for Values {
     }
 }
 
-/// A number, and whether it is an angle in degrees.
-fn measured(text: &str) -> Option<WrittenNumber> {
-    let text = text.trim();
-    let bare = text.strip_suffix("deg").or_else(|| text.strip_suffix('°'));
-    let number: f64 = bare.unwrap_or(text).trim_end().parse().ok()?;
-    number.is_finite().then_some(WrittenNumber { number, degrees: bare.is_some() })
+/// A number as it is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WrittenNumber {
+    /// It.
+    pub number: f64,
+    /// Whether it is an angle in degrees.
+    pub degrees: bool,
 }
 
-/// A number as it is written.
-struct WrittenNumber {
-    number: f64,
-    degrees: bool,
+impl WrittenNumber {
+    /// The number that `text` is; quotes around it do not count. `None` for what is no finite number.
+    pub fn of(text: &str) -> Option<Self> {
+        let text = text.trim().trim_matches('"').trim();
+        let bare = text.strip_suffix("deg").or_else(|| text.strip_suffix('°'));
+        let number: f64 = bare.unwrap_or(text).trim_end().parse().ok()?;
+        number.is_finite().then_some(Self { number, degrees: bare.is_some() })
+    }
+
+    /// It in SI units: angles in rad.
+    pub fn si(self) -> f64 {
+        if self.degrees { self.number.to_radians() } else { self.number }
+    }
 }
 
 fn is_range(text: &str) -> bool {
     let ends = text.split_once("..");
-    ends.is_some_and(|(low, rest)| measured(low).is_some() && !rest.is_empty() && !rest.contains(','))
+    ends.is_some_and(|(low, rest)| {
+        WrittenNumber::of(low).is_some() && !rest.is_empty() && !rest.contains(',')
+    })
 }
 
 /// Two numbers with `..` between them, the lower first. Both are in degrees if the second is.
@@ -140,7 +152,7 @@ fn ends(text: &str) -> Result<([f64; 2], bool), ValuesError> {
         ValuesError(format!("`{text}` is no range: write two numbers with `..` between them, such as 0.5..2"))
     };
     let (low, high) = text.split_once("..").ok_or_else(wrong)?;
-    let (low, high) = (measured(low).ok_or_else(wrong)?, measured(high).ok_or_else(wrong)?);
+    let (low, high) = (WrittenNumber::of(low).ok_or_else(wrong)?, WrittenNumber::of(high).ok_or_else(wrong)?);
     if low.number >= high.number {
         return Err(ValuesError(format!("the range `{text}` does not rise: write the lower number first")));
     }
@@ -211,7 +223,8 @@ fn normal(text: &str) -> Result<Values, ValuesError> {
         ))
     };
     let (mean, deviation) = text.split_once(',').ok_or_else(wrong)?;
-    let (mean, deviation) = (measured(mean).ok_or_else(wrong)?, measured(deviation).ok_or_else(wrong)?);
+    let (mean, deviation) =
+        (WrittenNumber::of(mean).ok_or_else(wrong)?, WrittenNumber::of(deviation).ok_or_else(wrong)?);
     let degrees = deviation.degrees;
     let distribution = Distribution::Normal { mean: mean.number, deviation: deviation.number };
     if deviation.number > 0.0 { Ok(Values::Drawn { distribution, degrees }) } else { Err(wrong()) }

@@ -34,7 +34,7 @@ pub(crate) struct Number {
     infinite: bool,
 }
 
-/// A finite number of any sensible size; `unit` is for messages.
+/// A finite number of any sensible size; `unit` is for messages, the schema and axes.
 pub(crate) const fn number(unit: &'static str) -> Number {
     Number { unit, low: -1e6, open: false, high: 1e6, infinite: false }
 }
@@ -90,6 +90,9 @@ impl Form for Number {
         if !high.is_null() {
             schema["maximum"] = high;
         }
+        if !self.unit.is_empty() {
+            schema["x-unit"] = json!(self.unit);
+        }
         schema
     }
 }
@@ -134,7 +137,7 @@ impl Form for Angle {
     fn schema(&self) -> Json {
         let [low, high] = [self.low - ROUNDING, self.high + ROUNDING];
         json!({ "anyOf": [
-            { "type": "number", "minimum": low, "maximum": high },
+            { "type": "number", "minimum": low, "maximum": high, "x-unit": "rad" },
             { "type": "string", "pattern": r"^\s*[-+]?[0-9.]+([eE][-+]?[0-9]+)?\s*(deg|°|rad)\s*$" },
         ] })
     }

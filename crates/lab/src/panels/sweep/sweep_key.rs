@@ -194,8 +194,7 @@ impl SweepKeys {
     pub(crate) fn label(&self, key: &str, degrees: bool) -> String {
         match self.called(key) {
             Some(known) => known.label(),
-            None if degrees => format!("{key} (°)"),
-            None => key.to_owned(),
+            None => sweeps::key_label(key, degrees),
         }
     }
 
