@@ -1,4 +1,4 @@
-//! Tells the program which commit it is built from, for the manifests of its runs.
+//! Tells the program which commit it is built from, for the manifests of runs and studies.
 
 use std::process::Command;
 

@@ -213,6 +213,22 @@ mod tests {
     }
 
     proptest! {
+        /// Two systems in a row are one of four states.
+        #[test]
+        fn a_cascade_is_a_matrix(entries in proptest::collection::vec(-8.0..8.0, 12)) {
+            let block = |k: usize| Matrix2::from_iterator(entries[4 * k..4 * k + 4].iter().copied());
+            let cascade = Cascade { first: block(0), coupling: block(1), second: block(2) };
+            let whole = |of: &Cascade| {
+                let mut whole = Matrix4::zeros();
+                whole.fixed_view_mut::<2, 2>(0, 0).copy_from(&of.first);
+                whole.fixed_view_mut::<2, 2>(2, 0).copy_from(&of.coupling);
+                whole.fixed_view_mut::<2, 2>(2, 2).copy_from(&of.second);
+                whole
+            };
+            let (ours, theirs) = (whole(&exponential(&cascade)), exponential(&whole(&cascade)));
+            prop_assert!((ours - theirs).amax() < 1e-12 * theirs.amax(), "{ours} {theirs}");
+        }
+
         /// Against another implementation.
         #[test]
         fn agrees_with_nalgebra(entries in proptest::collection::vec(-30.0..30.0, 16)) {

@@ -5,8 +5,8 @@
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
 use vocabulary::{MotionInput, Relative, math};
 
-/// The line between a leader and its follower as the follower sees it, ready for the equations: what the follower's own motion
-/// does does not depend on where the leader heads.
+/// The line between a leader and its follower as the follower sees it, ready for the equations: the effect of the follower's own
+/// motion does not depend on the leader's heading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LineOfSight {
     /// ℓ, m, at least the minimum it was made with.

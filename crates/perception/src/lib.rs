@@ -14,7 +14,7 @@ pub mod sensors;
 
 use vocabulary::{
     Edge, EdgeSample, HeadingReference, Motion, Observation, Relative, Snapshot, StepInterpolant,
-    TRACK_NODES, Track, math, wrap,
+    TRACK_NODES, Track, math, nearest_turn, wrap,
 };
 
 /// One observation per edge, of the truth.
@@ -93,15 +93,28 @@ fn track(
     samples[0] = first_sample(&before, reference);
     for (k, node) in Track::NODES.into_iter().enumerate().skip(1) {
         let now = motions(interpolant, edge, from + node * duration);
-        samples[k] = sample_of(turned(&samples[k - 1].relative, [&before, &now], reference), &now[1]);
+        let last = samples[k - 1].relative;
+        samples[k] = if apart(&before) && apart(&now) {
+            sample_of(turned(&last, [&before, &now], reference), &now[1])
+        } else {
+            // A line without length has no direction to count from.
+            let mut sample = first_sample(&now, reference);
+            sample.relative.bearing = nearest_turn(sample.relative.bearing, last.bearing);
+            sample
+        };
         before = now;
     }
     // A node on a kink belongs to the stretch it is sampled for: its acceleration is that of the middle.
-    let middle = f64::midpoint(samples[2].acceleration, samples[3].acceleration);
+    let middle = interpolant.during(edge.follower, from + duration / 2.0);
     for sample in &mut samples {
-        sample.acceleration = middle;
+        sample.acceleration = middle.acceleration;
     }
     Track { duration, samples }
+}
+
+/// Whether leader and follower are not on one spot.
+fn apart([leader, follower]: &[Motion; 2]) -> bool {
+    [leader.pose.x, leader.pose.y] != [follower.pose.x, follower.pose.y]
 }
 
 /// Where a follower is relative to its leader a little later than at `relative`: by how far the line between them and both robots
@@ -137,7 +150,7 @@ fn angle(from: [f64; 2], to: [f64; 2]) -> f64 {
 mod tests {
     use super::*;
     use proptest::prelude::*;
-    use vocabulary::{Pose, RobotState, nearest_turn};
+    use vocabulary::{Pose, RobotState};
 
     /// A leader at rest at the origin; a follower on a circle around it, whose acceleration jumps at 4 ms.
     struct Circling;
@@ -163,7 +176,55 @@ mod tests {
         }
     }
 
+    /// The same, of a leader that drives and turns: its heading crosses the seam as well.
+    struct Turning;
+
+    impl StepInterpolant for Turning {
+        fn duration(&self) -> f64 {
+            Circling.duration()
+        }
+
+        fn during(&self, robot: usize, elapsed: f64) -> Motion {
+            let pose = Pose::new(0.3 * elapsed, -elapsed, wrap(3.135 + 2.0 * elapsed));
+            if robot == 0 { Motion { pose, ..Motion::default() } } else { Circling.during(1, elapsed) }
+        }
+
+        fn saturation_time(&self, robot: usize) -> Option<f64> {
+            Circling.saturation_time(robot)
+        }
+    }
+
+    /// A follower that is on its leader's spot for a while.
+    struct Meeting;
+
+    impl StepInterpolant for Meeting {
+        fn duration(&self) -> f64 {
+            1.0
+        }
+
+        fn during(&self, robot: usize, elapsed: f64) -> Motion {
+            let x = if robot == 1 && elapsed < 0.5 { elapsed - 0.5 } else { 0.0 };
+            let y = if robot == 1 && elapsed > 0.8 { elapsed - 0.8 } else { 0.0 };
+            Motion { pose: Pose::new(x, y, 0.0), ..Motion::default() }
+        }
+
+        fn saturation_time(&self, _: usize) -> Option<f64> {
+            None
+        }
+    }
+
     const EDGE: Edge = Edge { leader: 0, follower: 1 };
+
+    /// Where the line has no length its direction begins anew.
+    #[test]
+    fn a_meeting_spoils_no_later_sample() {
+        tracks(&Meeting, EDGE, HeadingReference::Leader, |track| {
+            let last = track.samples[TRACK_NODES - 1].relative;
+            let alone = sample(&Meeting, EDGE, HeadingReference::Leader, 1.0).relative;
+            assert!((last.distance - 0.2).abs() < 1e-12);
+            assert!(wrap(last.bearing - alone.bearing).abs() < 1e-12, "{last:?} {alone:?}");
+        });
+    }
 
     #[test]
     fn a_step_with_a_kink_is_seen_in_two_smooth_stretches() {
@@ -189,9 +250,9 @@ mod tests {
     fn samples_of_a_track_are_those_of_their_instants() {
         for reference in [HeadingReference::Leader, HeadingReference::Path] {
             let mut from = 0.0_f64;
-            tracks(&Circling, EDGE, reference, |track| {
+            tracks(&Turning, EDGE, reference, |track| {
                 for (node, seen) in Track::NODES.iter().zip(&track.samples) {
-                    let alone = sample(&Circling, EDGE, reference, from + node * track.duration);
+                    let alone = sample(&Turning, EDGE, reference, from + node * track.duration);
                     let (ours, theirs) = (seen.relative, alone.relative);
                     assert!((ours.distance - theirs.distance).abs() < 1e-15);
                     assert!((ours.bearing - nearest_turn(theirs.bearing, ours.bearing)).abs() < 4e-15);

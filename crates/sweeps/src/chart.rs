@@ -108,10 +108,11 @@ impl ChartSide {
         if !(2..=MOST_DRAWN).contains(&(texts.len() as u64)) {
             return None;
         }
-        let numbers: Option<Vec<f64>> =
-            texts.iter().map(|text| Some(WrittenNumber::of(text)?.number)).collect();
+        let numbers: Option<Vec<WrittenNumber>> = texts.iter().map(|text| WrittenNumber::of(text)).collect();
+        let degrees = numbers.as_ref().is_some_and(|all| all.iter().all(|number| number.degrees));
+        let value = |number: WrittenNumber| if degrees { number.number } else { number.si() };
+        let numbers = numbers.map(|all| all.into_iter().map(value).collect::<Vec<f64>>());
         let rising = |numbers: &Vec<f64>| numbers.windows(2).all(|pair| pair[0] < pair[1]);
-        let degrees = texts.iter().any(|text| text.contains("deg"));
         let label = key_label(&parameter.key, degrees);
         let scale = if scale == ValueScale::Logarithmic { Scale::Log } else { Scale::Linear };
         let axis = match numbers.filter(rising) {

@@ -7,7 +7,7 @@ use crate::row::RunRow;
 use scene::{Diagnostics, Loaded, Override, Role, Scene, Study, StudyFault, Values, value_text};
 use std::path::{Path, PathBuf};
 use studies::copies::{Episode, StartScatter};
-use studies::{COMMIT, PROGRAM, SceneRun};
+use studies::{PROGRAM, SceneRun};
 use xxhash_rust::xxh3::Xxh3;
 
 /// A study with the scene it is of.
@@ -58,7 +58,7 @@ impl Experiment {
         let mut hash = Xxh3::new();
         // Neither its title nor where the scene lies makes a study another.
         let same = Study { title: String::new(), scene: String::new(), ..study.clone() };
-        for part in [PROGRAM, COMMIT.unwrap_or_default(), &same.to_toml(), &text] {
+        for part in [PROGRAM, &same.to_toml(), &text] {
             hash.update(part.as_bytes());
             hash.update(&[0]);
         }

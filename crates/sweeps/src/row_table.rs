@@ -229,6 +229,9 @@ mod tests {
             ("d", "uniform:2..2.5"),
             ("e", "=a"),
             ("f", "[1, 2],[3, 4]"),
+            ("g", "\"007\",\"07\""),
+            ("h", "\"1.5 rad\",\"90°\""),
+            ("i", "1,inf"),
         ]);
         let mut table = RowTable::new(&design);
         table.push(&RunRow::of(design.point(0), RowStatus::Complete, String::new()));
@@ -243,5 +246,8 @@ mod tests {
         assert!(matches!(column("d"), Column::Number(drawn) if (2.0..2.5).contains(&drawn[0])));
         assert_eq!(column("e"), &Column::Number(vec![quarter]));
         assert_eq!(column("f"), &Column::Text(vec!["[1, 2]".to_owned()]));
+        assert_eq!(column("g"), &Column::Text(vec!["\"007\"".to_owned()]));
+        assert_eq!(column("h"), &Column::Number(vec![1.5]));
+        assert_eq!(column("i"), &Column::Text(vec!["1".to_owned()]));
     }
 }

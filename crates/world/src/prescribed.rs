@@ -1,6 +1,6 @@
 //! Motion that is prescribed: a profile of speed and turn rate, integrated to a path.
 //!
-//! Gauss-Legendre quadrature; its error at 1 m/s and 10 rad/s is below 1e-12 m per second. Where the turn rate is large or
+//! Where both are constant it is an arc. Else it is a Gauss-Legendre quadrature; its error at 1 m/s and 10 rad/s is below 1e-12 m per second. Where the turn rate is large or
 //! changes fast, stretches are halved, so that a sharp bend of a path is driven as it is.
 
 use crate::arc;

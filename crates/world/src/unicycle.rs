@@ -1,7 +1,7 @@
 //! Unicycles without mass or slip (eq 1), moved exactly.
 //!
 //! A follower holds its command over a step: its path is an [`arc`], or two where its speed meets a bound.
-//! A lead robot follows a prescribed motion: its path is integrated by Gauss-Legendre quadrature, whose error at
+//! A lead robot follows a prescribed motion: an arc, or integrated by Gauss-Legendre quadrature, whose error at
 //! 1 m/s and 10 rad/s is below 1e-12 m per second.
 
 use crate::{Handling, World, arc, prescribed::prescribed, touch::Touches};

@@ -209,18 +209,25 @@ fn refusal(subject: &Path, faults: &[StudyFault]) -> Failure {
 /// Why the scene of a study cannot run: what the study's file says of it is told where it stands there.
 fn scene_refusal(study: &Study, subject: &Path, errors: Diagnostics) -> Failure {
     let scene = Path::new(&study.scene);
-    let wrong = |set: &[Override]| Scene::load(scene, set).err();
-    let fault = if !Study::is_meant(subject) {
-        None
-    } else if let Some(errors) = wrong(&[]) {
-        // What is wrong with a scene that is there stands in the scene.
-        (!scene.exists()).then_some(("scene".to_owned(), errors))
-    } else {
-        (0..study.set.len()).find_map(|k| Some((format!("set.{k}"), wrong(&study.set[..=k])?)))
+    let told = |set: &[Override]| Scene::load(scene, set).err();
+    let own = Study::load(subject).map_or(0, |file| file.set.len());
+    // An error is that of the override with which it comes.
+    let key = |error: &Diagnostic| {
+        let has = |errors: &Diagnostics| errors.all().iter().any(|other| other.message == error.message);
+        (0..own.min(study.set.len()))
+            .find(|k| told(&study.set[..=*k]).is_some_and(|errors| has(&errors)))
+            .map(|k| format!("set.{k}"))
     };
-    let located = fault.and_then(|(key, errors)| {
-        let fault = |error: &Diagnostic| StudyFault { key: Some(key.clone()), text: error.message.clone() };
-        Study::located(subject, &errors.all().iter().map(fault).collect::<Vec<_>>())
+    let keys: Option<Vec<String>> = if told(&[]).is_none() {
+        errors.all().iter().map(key).collect()
+    } else {
+        // What is wrong with a scene that is there stands in the scene.
+        (!scene.exists()).then(|| vec!["scene".to_owned(); errors.all().len()])
+    };
+    let located = keys.filter(|_| Study::is_meant(subject)).and_then(|keys| {
+        let fault =
+            |(key, error): (String, &Diagnostic)| StudyFault { key: Some(key), text: error.message.clone() };
+        Study::located(subject, &keys.into_iter().zip(errors.all()).map(fault).collect::<Vec<_>>())
     });
     sweeps::Error::Scene(located.unwrap_or(errors)).into()
 }

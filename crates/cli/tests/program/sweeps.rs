@@ -216,11 +216,14 @@ fn what_cannot_be_a_study_is_said_before_anything_runs() {
         .expect("written");
     let set = "set = [\"time.duration=1\", \"law.q=1\"]";
     fs::write(at("set.toml"), format!("schema = 1\nscene = \"line-three\"\n{set}\n")).expect("written");
+    let two = "set = [\"vehicle.wheelbase=0.6\", \"law.p=1\", \"vehicle.length=0.6\"]";
+    fs::write(at("two.toml"), format!("schema = 1\nscene = \"line-three\"\n{two}\n")).expect("written");
     fs::write(at("lost.toml"), "schema = 1\nscene = \"lost-scene.toml\"\n").expect("written");
     for (args, wanted) in [
         (vec!["study.toml"], "study.toml:5:1"),
         (vec!["set.toml"], "set.toml:3:27: unknown key `q`"),
-        (vec!["set.toml", "--set", "law.p=1"], "set.toml:3:27: unknown key `q`"),
+        (vec!["set.toml", "--set", "law.p=1"], "unknown key `p`"),
+        (vec!["two.toml"], "two.toml:3:33: unknown key `p`"),
         (vec!["other.toml", "--set", "law.p=1"], "--set:1:5: unknown key `p`"),
         (vec!["lost.toml"], "lost.toml:2:9: no such file"),
         (vec!["line-three", "--vary", "law.kk=1,2"], "--vary law.kk: `law.kk` cannot be 1"),

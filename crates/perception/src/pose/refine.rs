@@ -111,11 +111,11 @@ impl Problem<'_> {
                 Some(there) if there.cost <= here.cost * (1.0 + 1e-12) => {
                     *at = next;
                     here = there;
-                    damping = if damping < 1e-6 { 0.0 } else { damping * 0.1 };
-                    // The first three are in m and rad, the others in their spreads.
-                    if step.amax() < SMALLEST_STEP {
+                    // The first three are in m and rad, the others in their spreads. Damped steps are small anyway.
+                    if damping < 1e-3 && step.amax() < SMALLEST_STEP {
                         break;
                     }
+                    damping = if damping < 1e-6 { 0.0 } else { damping * 0.1 };
                 }
                 _ => damping = if damping == 0.0 { 1e-4 } else { damping * 10.0 },
             }

@@ -211,7 +211,8 @@ fn study(text: &str, path: &Path, reporter: &mut Reporter) -> Option<Study> {
     Some(study)
 }
 
-/// Faults at the keys they name, of which the text has one at least: varied keys, `scene`, and `set.K` for an override by its place.
+/// Puts faults where the keys stand that they name: varied keys, `scene`, and `set.K` for an override by its place. `None` where the
+/// text has none of them.
 pub(super) fn located(text: &str, path: &Path, faults: &[StudyFault]) -> Option<Diagnostics> {
     let mut reporter = Reporter::new(path.parent().unwrap_or(Path::new("")));
     let source = reporter.add_source(path.display().to_string(), text);

@@ -118,19 +118,26 @@ impl fmt::Display for Values {
 /// A number as it is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WrittenNumber {
-    /// It.
+    /// Its value, in the unit that it is written in.
     pub number: f64,
     /// Whether it is an angle in degrees.
     pub degrees: bool,
 }
 
 impl WrittenNumber {
-    /// The number that `text` is; quotes around it do not count. `None` for what is no finite number.
+    /// The number that `text` is, or the angle, which may be in quotes. `None` for what is no finite number.
     pub fn of(text: &str) -> Option<Self> {
-        let text = text.trim().trim_matches('"').trim();
-        let bare = text.strip_suffix("deg").or_else(|| text.strip_suffix('°'));
-        let number: f64 = bare.unwrap_or(text).trim_end().parse().ok()?;
-        number.is_finite().then_some(Self { number, degrees: bare.is_some() })
+        let text = text.trim();
+        let quoted = text.strip_prefix('"').and_then(|rest| rest.strip_suffix('"'));
+        let text = quoted.unwrap_or(text).trim();
+        let degrees = text.strip_suffix("deg").or_else(|| text.strip_suffix('°'));
+        let angle = degrees.or_else(|| text.strip_suffix("rad"));
+        // A number in quotes is text.
+        if quoted.is_some() && angle.is_none() {
+            return None;
+        }
+        let number: f64 = angle.unwrap_or(text).trim_end().parse().ok()?;
+        number.is_finite().then_some(Self { number, degrees: degrees.is_some() })
     }
 
     /// It in SI units: angles in rad.
